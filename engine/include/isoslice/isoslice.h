@@ -1,0 +1,13 @@
+/* The whole public interface of isoslice. */
+#ifndef ISOSLICE_ISOSLICE_H
+#define ISOSLICE_ISOSLICE_H
+
+#include <isoslice/geometry.h>
+#include <isoslice/mesh.h>
+#include <isoslice/path.h>
+#include <isoslice/planar.h>
+#include <isoslice/slice.h>
+#include <isoslice/status.h>
+#include <isoslice/version.h>
+
+#endif

@@ -1,0 +1,48 @@
+/* Iso-slicing: a mesh and a height become a coloured link, all levels at once (paper, 5).
+ *
+ * For level r the crossings are A_r = { a : h(a) <= r < h(alpha a) }. The successor of a crossing
+ * is found by arithmetic alone: in the neighbour's triangle it is one of two darts. Orbits close:
+ * outer contours run counter-clockwise and holes clockwise seen against the gradient, material on
+ * the left. */
+#ifndef ISOSLICE_SLICE_H
+#define ISOSLICE_SLICE_H
+
+#include <isoslice/geometry.h>
+#include <isoslice/mesh.h>
+#include <isoslice/status.h>
+
+/* Printed layers. Layer i is cut at `cut[i]` and printed with its top at `top[i]`, `height[i]`
+ * thick. */
+typedef struct iso_levels {
+    int32_t count;
+    double *cut;    /* [count] ascending, value of the field in mm */
+    double *top;    /* [count] ascending */
+    double *height; /* [count] */
+} iso_levels;
+
+/* One layer of thickness `first`, then layers of `height`, cut at their middles, as many as have
+ * their middle below `object_height` (mm, all of them). */
+ISO_API iso_status iso_levels_uniform(iso_levels *levels, double object_height, double first,
+                                      double height) ISO_MUST_CHECK;
+ISO_API void iso_levels_free(iso_levels *levels);
+
+/* A coloured link in canonical order: contours by colour (the level's index), within a colour by
+ * the lowest dart that starts them; a contour's crossings are consecutive, so successor(i) is i + 1
+ * or, at its end, its start. The successor is stored all the same where the link leaves for a file
+ * (link.h). */
+typedef struct iso_slices {
+    int32_t level_count;
+    int32_t contour_count;
+    int64_t crossing_count;
+    int32_t *level_first;   /* [level_count + 1] contours of each level */
+    int64_t *contour_first; /* [contour_count + 1] crossings of each contour */
+    iso_vec2 *point;        /* [crossing_count] mm, in the chart of the level (planar: x, y) */
+} iso_slices;
+
+/* Cut by planes z = levels->cut[i]. The slices own their arrays. */
+ISO_API iso_status iso_slice_planar(iso_slices *slices, const iso_mesh *mesh,
+                                    const iso_levels *levels) ISO_MUST_CHECK;
+ISO_API void iso_slices_free(iso_slices *slices);
+ISO_API iso_status iso_slices_validate(const iso_slices *slices) ISO_MUST_CHECK;
+
+#endif

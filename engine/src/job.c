@@ -1,0 +1,1 @@
+typedef int iso_job_to_come;
