@@ -6,6 +6,7 @@
 #include <isoslice/mesh.h>
 #include <isoslice/path.h>
 #include <isoslice/planar.h>
+#include <isoslice/preview.h>
 #include <isoslice/slice.h>
 #include <isoslice/status.h>
 #include <isoslice/version.h>
