@@ -24,6 +24,10 @@ typedef struct iso_levels {
  * their middle below `object_height` (mm, all of them). */
 ISO_API iso_status iso_levels_uniform(iso_levels *levels, double object_height, double first,
                                       double height) ISO_MUST_CHECK;
+/* The same for any list of heights, bottom up; behind its end the last one goes on. Layers whose
+ * middle is not below `object_height` are left out. ISO_USAGE: a height that is not above 0. */
+ISO_API iso_status iso_levels_from_heights(iso_levels *levels, const double *height, int32_t count,
+                                           double object_height) ISO_MUST_CHECK;
 ISO_API void iso_levels_free(iso_levels *levels);
 
 /* A coloured link in canonical order: contours by colour (the level's index), within a colour by

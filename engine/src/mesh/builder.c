@@ -1,0 +1,237 @@
+#include "mesh/builder.h"
+
+#include "base/memory.h"
+#include "mesh/repair.h"
+
+enum { BATCH = 64, TABLE_LEAST = 1 << 10 };
+
+/* Links of a list, while opposite[] holds them: never confused with a dart, which is >= 0. */
+static inline int32_t link_to(int32_t dart) {
+    return -2 - dart;
+}
+
+static inline int32_t link_target(int32_t link) {
+    return -2 - link;
+}
+
+typedef struct corner {
+    float x, y, z;
+} corner;
+
+static inline uint32_t bits_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static inline uint64_t hash_of(corner at) {
+    uint64_t key = bits_of(at.x) | (uint64_t)bits_of(at.y) << 32;
+    key = (key ^ bits_of(at.z) * 0x9E3779B97F4A7C15u) * 0xD6E8FEB86659FD93u;
+    key = (key ^ key >> 32) * 0xD6E8FEB86659FD93u;
+    return key ^ key >> 32;
+}
+
+static iso_status table_resize(iso_mesh_builder *b, int64_t size) {
+    int32_t *table;
+    ISO_TRY(ISO_ALLOCATE(table, size));
+    memset(table, 0xff, (size_t)size * sizeof *table);
+    for (int32_t v = 0; v < b->mesh.vertex_count; v++) {
+        iso_vec3 p = b->mesh.position[v];
+        uint64_t slot = hash_of((corner){(float)p.x, (float)p.y, (float)p.z});
+        while (table[slot &= (uint64_t)size - 1] >= 0)
+            slot++;
+        table[slot] = v;
+    }
+    iso_release(b->table);
+    b->table = table;
+    b->table_size = size;
+    return ISO_OK;
+}
+
+/* Room for a batch, so that the loops over corners cannot fail. */
+static iso_status reserve(iso_mesh_builder *b, int64_t triangles) {
+    int64_t darts = 3 * (b->mesh.triangle_count + triangles);
+    int64_t vertices = b->mesh.vertex_count + 3 * triangles;
+    if (b->mesh.triangle_count + triangles > ISO_MESH_TRIANGLES_MAX)
+        return iso_fail(ISO_UNREADABLE, "more than %d triangles", ISO_MESH_TRIANGLES_MAX);
+    ISO_TRY(ISO_GROW(b->mesh.origin, b->origin_capacity, darts));
+    ISO_TRY(ISO_GROW(b->mesh.opposite, b->opposite_capacity, darts));
+    ISO_TRY(ISO_GROW(b->mesh.position, b->position_capacity, vertices));
+    ISO_TRY(ISO_GROW(b->head, b->head_capacity, vertices));
+    if (vertices > b->table_size / 4 * 3)
+        ISO_TRY(table_resize(b, 2 * b->table_size));
+    return ISO_OK;
+}
+
+iso_status iso_mesh_builder_begin(iso_mesh_builder *b, int64_t expected) {
+    *b = (iso_mesh_builder){0};
+    if (expected > ISO_MESH_TRIANGLES_MAX)
+        return iso_fail(ISO_UNREADABLE, "%lld triangles; at most %d can be handled",
+                        (long long)expected, ISO_MESH_TRIANGLES_MAX);
+    /* a closed mesh has half as many vertices as triangles, give or take its genus */
+    int64_t vertices = expected / 2 + 4 * BATCH;
+    int64_t size = TABLE_LEAST;
+    while (size / 4 * 3 < vertices)
+        size *= 2;
+    iso_status status = table_resize(b, size);
+    if (status == ISO_OK)
+        status = ISO_GROW(b->mesh.origin, b->origin_capacity, 3 * expected);
+    if (status == ISO_OK)
+        status = ISO_GROW(b->mesh.opposite, b->opposite_capacity, 3 * expected);
+    if (status == ISO_OK)
+        status = ISO_GROW(b->mesh.position, b->position_capacity, vertices);
+    if (status == ISO_OK)
+        status = ISO_GROW(b->head, b->head_capacity, vertices);
+    if (status != ISO_OK)
+        iso_mesh_builder_discard(b);
+    return status;
+}
+
+void iso_mesh_builder_discard(iso_mesh_builder *b) {
+    iso_mesh_free(&b->mesh);
+    iso_release(b->head);
+    iso_release(b->table);
+    *b = (iso_mesh_builder){0};
+}
+
+int64_t iso_mesh_builder_find_absurd(const void *triangle, int64_t count, size_t stride) {
+    const char *at = triangle;
+    const uint32_t largest = bits_of(ISO_MESH_COORDINATE_MAX);
+    for (int64_t t = 0; t < count; t++, at += stride) {
+        uint32_t bits[9], over = 0;
+        memcpy(bits, at, sizeof bits);
+        for (int k = 0; k < 9; k++) /* NaN and infinity have the largest bits of all */
+            over |= (bits[k] & 0x7fffffffu) > largest;
+        if (over)
+            return t;
+    }
+    return count;
+}
+
+static inline int32_t weld(iso_mesh_builder *b, corner at, uint64_t hash) {
+    uint64_t mask = (uint64_t)b->table_size - 1;
+    for (uint64_t slot = hash & mask;; slot = (slot + 1) & mask) {
+        int32_t v = b->table[slot];
+        if (v < 0) {
+            v = b->mesh.vertex_count++;
+            b->table[slot] = v;
+            b->mesh.position[v] = (iso_vec3){at.x, at.y, at.z};
+            b->head[v] = -1;
+            return v;
+        }
+        const iso_vec3 *p = &b->mesh.position[v];
+        if (p->x == at.x && p->y == at.y && p->z == at.z)
+            return v;
+    }
+}
+
+/* Find the partner of `dart`, which runs from u to w, among the edges of the lower vertex. A
+ * matched edge stays listed, so that further darts on it are noticed: opposite[first dart] is the
+ * second, and opposite[second] carries the list on. */
+static inline void link_dart(iso_mesh_builder *b, int32_t dart, int32_t u, int32_t w) {
+    int32_t *opposite = b->mesh.opposite;
+    const int32_t *origin = b->mesh.origin;
+    int32_t low = u < w ? u : w, high = u < w ? w : u;
+    for (int32_t e = b->head[low]; e >= 0;) {
+        int32_t mate = opposite[e], from = origin[e];
+        int32_t far = from == low ? origin[iso_mesh_alpha(e)] : from;
+        if (far == high) {
+            if (mate < 0 && from == w) {
+                opposite[dart] = mate;
+                opposite[e] = dart;
+                b->open--;
+            } else {
+                opposite[dart] = link_to(-1);
+                b->excess++;
+            }
+            return;
+        }
+        e = link_target(mate >= 0 ? opposite[mate] : mate);
+    }
+    opposite[dart] = link_to(b->head[low]);
+    b->head[low] = dart;
+    b->open++;
+}
+
+static void add_batch(iso_mesh_builder *b, const char *at, int count, size_t stride) {
+    corner c[3 * BATCH];
+    uint64_t hash[3 * BATCH];
+    for (int t = 0; t < count; t++)
+        memcpy(c + 3 * t, at + (size_t)t * stride, 3 * sizeof *c);
+    for (int i = 0; i < 3 * count; i++) {
+        c[i] = (corner){c[i].x + 0.0f, c[i].y + 0.0f, c[i].z + 0.0f}; /* -0 + 0 = 0 */
+        hash[i] = hash_of(c[i]);
+        __builtin_prefetch(&b->table[hash[i] & ((uint64_t)b->table_size - 1)]);
+    }
+    for (int t = 0; t < count; t++) {
+        int32_t v[3];
+        for (int k = 0; k < 3; k++)
+            v[k] = weld(b, c[3 * t + k], hash[3 * t + k]);
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+            b->mesh.defects.degenerate++;
+            continue;
+        }
+        int32_t dart = 3 * b->mesh.triangle_count++;
+        memcpy(b->mesh.origin + dart, v, sizeof v);
+        for (int k = 0; k < 3; k++)
+            link_dart(b, dart + k, v[k], v[k == 2 ? 0 : k + 1]);
+    }
+}
+
+iso_status iso_mesh_builder_add(iso_mesh_builder *b, const void *triangle, int64_t count,
+                                size_t stride) {
+    const char *at = triangle;
+    for (int64_t done = 0; done < count; done += BATCH) {
+        int64_t batch = count - done < BATCH ? count - done : BATCH;
+        ISO_TRY(reserve(b, batch));
+        add_batch(b, at + (size_t)done * stride, (int)batch, stride);
+    }
+    b->mesh.defects.triangles_read += count;
+    return ISO_OK;
+}
+
+/* Replace the list links by the involution; -1 where an edge has no partner. */
+static void resolve(iso_mesh *mesh) {
+    int32_t darts = 3 * mesh->triangle_count, *opposite = mesh->opposite;
+    for (int32_t a = 0; a < darts; a++) {
+        if (opposite[a] > a)
+            opposite[opposite[a]] = a;
+        else if (opposite[a] < 0)
+            opposite[a] = -1;
+    }
+}
+
+iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b) {
+    *mesh = (iso_mesh){0};
+    resolve(&b->mesh);
+    iso_release(b->head);
+    iso_release(b->table);
+    b->head = b->table = NULL;
+    bool closed = b->open == 0 && b->excess == 0;
+    iso_status status = iso_mesh_repair(&b->mesh, closed);
+    if (status == ISO_OK) {
+        *mesh = b->mesh;
+        b->mesh = (iso_mesh){0};
+    }
+    iso_mesh_builder_discard(b);
+    return status;
+}
+
+iso_status iso_mesh_from_triangles(iso_mesh *mesh, const float *triangle, int64_t count) {
+    *mesh = (iso_mesh){0};
+    if (count <= 0)
+        return iso_fail(ISO_UNREADABLE, "no triangles");
+    int64_t absurd = iso_mesh_builder_find_absurd(triangle, count, 9 * sizeof(float));
+    if (absurd < count)
+        return iso_fail(ISO_UNREADABLE,
+                        "triangle %lld has a coordinate that is not finite or beyond 10 km",
+                        (long long)absurd);
+    iso_mesh_builder builder;
+    ISO_TRY(iso_mesh_builder_begin(&builder, count));
+    iso_status status = iso_mesh_builder_add(&builder, triangle, count, 9 * sizeof(float));
+    if (status != ISO_OK) {
+        iso_mesh_builder_discard(&builder);
+        return status;
+    }
+    return iso_mesh_builder_finish(mesh, &builder);
+}
