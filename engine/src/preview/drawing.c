@@ -58,6 +58,7 @@ static layout lay_out(const iso_preview_drawing *drawing, const iso_preview_opti
     if (l.columns > options->columns)
         l.columns = options->columns;
     l.rows = (drawing->panel_count + l.columns - 1) / l.columns;
+    l.columns = (drawing->panel_count + l.rows - 1) / l.rows; /* 6 as 3 and 3, not 4 and 2 */
     l.view_width = drawing->box.max.x - drawing->box.min.x + 2 * MARGIN;
     l.view_height = drawing->box.max.y - drawing->box.min.y + 2 * MARGIN;
     int64_t longer = l.view_width > l.view_height ? l.view_width : l.view_height;
