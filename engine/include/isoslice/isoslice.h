@@ -2,6 +2,7 @@
 #ifndef ISOSLICE_ISOSLICE_H
 #define ISOSLICE_ISOSLICE_H
 
+#include <isoslice/gcode.h>
 #include <isoslice/geometry.h>
 #include <isoslice/mesh.h>
 #include <isoslice/path.h>

@@ -1,0 +1,98 @@
+#include "gcode/planner.h"
+
+#include <math.h>
+#include <string.h>
+
+static double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+void iso_planner_start(iso_planner *planner, double junction_deviation) {
+    planner->junction_deviation = junction_deviation;
+    planner->x = planner->y = planner->z = 0;
+    planner->entry_speed = planner->time = planner->idle_time = 0;
+    planner->count = 0;
+}
+
+/* Seconds for a block entered and left at the given speeds. */
+static double time_of(const iso_planner_block *b, double in, double out, double out_squared) {
+    double acceleration = b->gain / (2 * b->length);
+    double peak_squared = (b->gain + in * in + out_squared) / 2;
+    if (peak_squared <= b->speed * b->speed)
+        return (2 * sqrt(peak_squared) - in - out) / acceleration;
+    double ramps = 2 * b->speed * b->speed - in * in - out_squared;
+    return (2 * b->speed - in - out) / acceleration +
+           (b->length - ramps / (2 * acceleration)) / b->speed;
+}
+
+/* Entry speeds from which the machine can still brake, were it to stop behind the last block. */
+static void plan_backwards(iso_planner *planner) {
+    double next = 0;
+    for (int32_t i = planner->count; i-- > 0;) {
+        iso_planner_block *b = &planner->block[i];
+        next = b->entry = smaller(b->limit, next + b->gain);
+    }
+}
+
+/* Time the first `count` blocks and let them go. */
+static void let_go(iso_planner *planner, int32_t count) {
+    double in = planner->entry_speed;
+    for (int32_t i = 0; i < count; i++) {
+        const iso_planner_block *b = &planner->block[i];
+        double next = i + 1 < planner->count ? b[1].entry : 0;
+        double out_squared = smaller(next, in * in + b->gain);
+        double out = sqrt(out_squared);
+        double t = time_of(b, in, out, out_squared);
+        planner->time += t;
+        if (!b->extrudes)
+            planner->idle_time += t;
+        in = out;
+    }
+    planner->entry_speed = in;
+    planner->count -= count;
+    memmove(planner->block, planner->block + count,
+            (size_t)planner->count * sizeof planner->block[0]);
+}
+
+/* Square of the speed at which the corner's arc of the given deviation can be taken. */
+static double junction_squared(const iso_planner *planner, double x, double y, double z,
+                               double acceleration) {
+    double cosine = -(planner->x * x + planner->y * y + planner->z * z);
+    int moved = planner->x != 0 || planner->y != 0 || planner->z != 0;
+    if (!moved || cosine > 0.999999 || (x == 0 && y == 0 && z == 0))
+        return 0;
+    if (cosine < -0.999999)
+        return 1e30;
+    double sine = sqrt(0.5 * (1 - cosine));
+    return acceleration * planner->junction_deviation * sine / (1 - sine);
+}
+
+void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
+    if (!(move->length > 0) || !(move->speed > 0))
+        return;
+    if (planner->count == ISO_PLANNER_WINDOW) {
+        plan_backwards(planner);
+        let_go(planner, ISO_PLANNER_WINDOW / 2);
+    }
+    double inverse = 1 / move->length;
+    double x = move->dx * inverse, y = move->dy * inverse, z = move->dz * inverse;
+    double entry = junction_squared(planner, x, y, z, move->acceleration);
+    double before = planner->count > 0 ? planner->block[planner->count - 1].speed : 0;
+    entry = smaller(entry, smaller(before * before, move->speed * move->speed));
+    planner->block[planner->count++] =
+        (iso_planner_block){.length = move->length,
+                            .speed = move->speed,
+                            .gain = 2 * move->acceleration * move->length,
+                            .limit = entry,
+                            .extrudes = move->extrudes};
+    planner->x = x;
+    planner->y = y;
+    planner->z = z;
+}
+
+void iso_planner_stop(iso_planner *planner) {
+    plan_backwards(planner);
+    let_go(planner, planner->count);
+    planner->x = planner->y = planner->z = 0;
+    planner->entry_speed = 0;
+}

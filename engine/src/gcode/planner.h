@@ -1,0 +1,46 @@
+/* How long the printer will take: a look-ahead planner like the firmware's, with trapezoidal speeds
+ * and junction deviation.
+ *
+ * Moves stream through a window. When it is full, entry speeds are planned backwards from a stop at
+ * its end and the older half is timed; a stop pretended so far ahead is felt only by runs that need
+ * more than half a window to brake. */
+#ifndef ISO_GCODE_PLANNER_H
+#define ISO_GCODE_PLANNER_H
+
+#include <stdint.h>
+
+enum { ISO_PLANNER_WINDOW = 512 };
+
+typedef struct iso_planner_block {
+    double length; /* mm */
+    double speed;  /* mm/s it would like */
+    double gain;   /* 2 acceleration length: what a full run adds to the square of a speed */
+    double limit;  /* mm^2/s^2: entry by the junction and both speeds */
+    double entry;  /* mm^2/s^2: entry by the plan, too */
+    int32_t extrudes;
+} iso_planner_block;
+
+typedef struct iso_planner {
+    double junction_deviation;
+    double x, y, z;         /* direction of the last move; 0 if it moved no axis */
+    double entry_speed;     /* of block 0 */
+    double time, idle_time; /* s, of what left the window */
+    int32_t count;
+    iso_planner_block block[ISO_PLANNER_WINDOW];
+} iso_planner;
+
+typedef struct iso_planner_move {
+    double dx, dy, dz;   /* mm */
+    double length;       /* mm: of (dx, dy, dz), or of filament if those are 0 */
+    double speed;        /* mm/s */
+    double acceleration; /* mm/s^2 */
+    int extrudes;
+} iso_planner_move;
+
+void iso_planner_start(iso_planner *planner, double junction_deviation);
+void iso_planner_add(iso_planner *planner, const iso_planner_move *move);
+
+/* The machine stands still here. */
+void iso_planner_stop(iso_planner *planner);
+
+#endif

@@ -1,0 +1,41 @@
+/* Layers of ordered paths in, G-code out (docs/gcode.md).
+ *
+ *     iso_gcode_writer_new(&writer, output, &options)
+ *     iso_gcode_begin(writer)
+ *     iso_gcode_layer(writer, &layer)              once a layer, from the bed up
+ *     iso_gcode_finish(&totals, writer, config, payload)
+ *     iso_gcode_writer_free(writer)                always
+ *
+ * Nothing is committed: the output stays the caller's, who commits or abandons it. */
+#ifndef ISO_GCODE_WRITER_H
+#define ISO_GCODE_WRITER_H
+
+#include <isoslice/gcode.h>
+#include <isoslice/path.h>
+
+#include "base/output.h"
+
+typedef struct iso_gcode_writer iso_gcode_writer;
+
+typedef struct iso_gcode_layer_info {
+    int32_t index;          /* 0 on the bed */
+    int32_t z, height;      /* units: its top, and how high it is */
+    const iso_paths *paths; /* in printing order (iso_order_layer) */
+} iso_gcode_layer_info;
+
+/* Writes the lines of the config block, each "; key = value\n". */
+typedef iso_status iso_gcode_config_lines(iso_output *output, void *payload);
+
+iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
+                                const iso_gcode_options *options) ISO_MUST_CHECK;
+void iso_gcode_writer_free(iso_gcode_writer *writer); /* NULL is allowed */
+
+iso_status iso_gcode_begin(iso_gcode_writer *writer) ISO_MUST_CHECK;
+iso_status iso_gcode_layer(iso_gcode_writer *writer,
+                           const iso_gcode_layer_info *layer) ISO_MUST_CHECK;
+
+/* `config` may be NULL: then there is no config block. */
+iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *writer,
+                            iso_gcode_config_lines *config, void *payload) ISO_MUST_CHECK;
+
+#endif
