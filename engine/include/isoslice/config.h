@@ -1,0 +1,173 @@
+/* Options: what the user may choose.
+ *
+ * One table (options.inl) lists them all. A struct iso_options is plain data without pointers: copy
+ * it by assignment, share it between threads as const, never free it. Numbers hold decimals of up
+ * to nine places exactly, so that a value that is printed and read again is the same value. */
+#ifndef ISOSLICE_CONFIG_H
+#define ISOSLICE_CONFIG_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <isoslice/geometry.h>
+#include <isoslice/path.h>
+#include <isoslice/status.h>
+
+#define ISO_TEXT_SIZE 16384  /* bytes of a text option, its end included */
+#define ISO_POINTS_MAX 256   /* corners of a bed */
+#define ISO_NUMBERS_MAX 4096 /* numbers in a list */
+
+/* A number in the option's unit, or in percent of what the option's help names. */
+typedef struct iso_relative {
+    double value;
+    bool percent;
+} iso_relative;
+
+static inline double iso_relative_of(iso_relative relative, double whole) {
+    return relative.percent ? relative.value / 100 * whole : relative.value;
+}
+
+typedef struct iso_place { /* mm; if not given, x = y = 0 */
+    bool given;
+    double x, y;
+} iso_place;
+
+typedef struct iso_points { /* mm */
+    int32_t count;
+    iso_vec2 point[ISO_POINTS_MAX];
+} iso_points;
+
+typedef struct iso_numbers {
+    int32_t count;
+    double value[ISO_NUMBERS_MAX];
+} iso_numbers;
+
+/* The words of each list, as ISO_PATTERN_GRID. */
+#define ISO_WORD(kind, constant, word) ISO_WORD_OF_##kind(ISO_##kind##_##constant)
+#define ISO_WORD_OF_PATTERN(constant) constant,
+#define ISO_WORD_OF_FLAVOR(constant)
+typedef enum iso_fill_pattern {
+#include <isoslice/options.inl>
+} iso_fill_pattern;
+#undef ISO_WORD_OF_PATTERN
+#undef ISO_WORD_OF_FLAVOR
+#define ISO_WORD_OF_PATTERN(constant)
+#define ISO_WORD_OF_FLAVOR(constant) constant,
+typedef enum iso_gcode_flavor {
+#include <isoslice/options.inl>
+} iso_gcode_flavor;
+#undef ISO_WORD_OF_PATTERN
+#undef ISO_WORD_OF_FLAVOR
+#undef ISO_WORD
+
+typedef enum iso_option_kind {
+    ISO_KIND_BOOL,     /* bool */
+    ISO_KIND_INTEGER,  /* int32_t */
+    ISO_KIND_NUMBER,   /* double, in the option's unit */
+    ISO_KIND_PERCENT,  /* double: 20 is 20 % */
+    ISO_KIND_RELATIVE, /* iso_relative */
+    ISO_KIND_PATTERN,  /* int32_t, an iso_fill_pattern */
+    ISO_KIND_FLAVOR,   /* int32_t, an iso_gcode_flavor */
+    ISO_KIND_TEXT,     /* char [ISO_TEXT_SIZE], lines end in '\n' */
+    ISO_KIND_PLACE,    /* iso_place */
+    ISO_KIND_POINTS,   /* iso_points */
+    ISO_KIND_NUMBERS   /* iso_numbers */
+} iso_option_kind;
+
+typedef struct iso_options {
+#define ISO_FIELD_BOOL(key) bool key;
+#define ISO_FIELD_INTEGER(key) int32_t key;
+#define ISO_FIELD_NUMBER(key) double key;
+#define ISO_FIELD_PERCENT(key) double key;
+#define ISO_FIELD_RELATIVE(key) iso_relative key;
+#define ISO_FIELD_PATTERN(key) int32_t key;
+#define ISO_FIELD_FLAVOR(key) int32_t key;
+#define ISO_FIELD_TEXT(key) char key[ISO_TEXT_SIZE];
+#define ISO_FIELD_PLACE(key) iso_place key;
+#define ISO_FIELD_POINTS(key) iso_points key;
+#define ISO_FIELD_NUMBERS(key) iso_numbers key;
+#define ISO_OPTION(key, kind, initial, unit, min, max, category, help) ISO_FIELD_##kind(key)
+#include <isoslice/options.inl>
+#undef ISO_OPTION
+} iso_options;
+
+/* A row of the table. All texts are constants. */
+typedef struct iso_option_info {
+    const char *key;
+    iso_option_kind kind;
+    const char *initial; /* the default, as a user would write it */
+    const char *unit;    /* "" if it has none */
+    double min, max;     /* bounds, both allowed; of no meaning for bools, words and texts */
+    const char *category;
+    const char *help;
+} iso_option_info;
+
+ISO_API int32_t iso_option_count(void);
+ISO_API const iso_option_info *iso_option_at(int32_t option); /* 0 <= option < count */
+/* The number of an option by its key ('-' counts as '_'), or -1. */
+ISO_API int32_t iso_option_find(const char *key);
+/* Word i of an option whose kind is a list of words; NULL behind the last one. */
+ISO_API const char *iso_option_word(int32_t option, int32_t i);
+/* The known key nearest to a mistyped one, or NULL if none is near. */
+ISO_API const char *iso_option_suggest(const char *key);
+
+ISO_API void iso_options_defaults(iso_options *options);
+
+/* Set one option from text. `where` (a flag, "file:12") begins the message of a failure:
+ * ISO_BAD_CONFIG for an unknown key, a value that can't be read or is out of range; the options
+ * then are as before. */
+ISO_API iso_status iso_options_set(iso_options *options, const char *key, const char *value,
+                                   const char *where) ISO_MUST_CHECK;
+
+/* What a file had that isn't ours: its keys, and words of a list that we don't know (the option
+ * then keeps its value). One line, comma-separated, cut off with "..." if it gets too long. */
+typedef struct iso_config_notes {
+    int32_t unknown_count, unused_count;
+    char unknown[512]; /* keys */
+    char unused[512];  /* "key = word" */
+} iso_config_notes;
+
+/* Read a configuration: a flat ini file of `key = value` lines; a bundle with [print:NAME]
+ * sections, of which `sections` are taken; or the block of settings at the end of a G-code file.
+ * `path` may be followed by the names of sections, as "bundle.ini:print:0.20mm Fine:filament:PLA";
+ * each section's `inherits` come before it. Lines behind the first win. Notes are added to `notes`.
+ * A list where a number is due, one value per extruder, gives its first. ISO_UNREADABLE: no such
+ * file; ISO_BAD_CONFIG: names file and line. On failure the options are as before. */
+ISO_API iso_status iso_options_read(iso_options *options, const char *path,
+                                    iso_config_notes *notes) ISO_MUST_CHECK;
+
+/* Rules between options: the message names both. ISO_BAD_CONFIG. */
+ISO_API iso_status iso_options_check(const iso_options *options) ISO_MUST_CHECK;
+
+/* Write an option's value as text that iso_options_set reads back to the same value: at most
+ * size - 1 bytes and a closing 0. Returns the whole length, as snprintf does. */
+ISO_API size_t iso_options_format(char *text, size_t size, const iso_options *options,
+                                  int32_t option);
+ISO_API bool iso_options_is_default(const iso_options *options, int32_t option);
+
+/* Call print(payload, key, value) for every option in the order of the table, or only for those
+ * that differ from their defaults. A failure of print ends it and is returned. */
+typedef iso_status iso_option_printer(void *payload, const char *key, const char *value);
+ISO_API iso_status iso_options_print(const iso_options *options, iso_option_printer *print,
+                                     void *payload) ISO_MUST_CHECK;
+ISO_API iso_status iso_options_print_changed(const iso_options *options, iso_option_printer *print,
+                                             void *payload) ISO_MUST_CHECK;
+
+/* Copy a G-code text with every [key] or {key} replaced by that option's value. ISO_BAD_CONFIG
+ * names a placeholder that is no option, or a result of more than size - 1 bytes. */
+ISO_API iso_status iso_options_expand(char *out, size_t size, const char *text,
+                                      const iso_options *options) ISO_MUST_CHECK;
+
+/* Values that follow from several options, by PrusaSlicer's rules. Heights and widths in mm, speeds
+ * in mm/s. */
+ISO_API double iso_options_first_height(const iso_options *options);
+ISO_API double iso_options_width(const iso_options *options, iso_role role, bool first_layer,
+                                 double layer_height);
+ISO_API double iso_options_speed(const iso_options *options, iso_role role, bool small_perimeter,
+                                 bool first_layer);
+ISO_API double iso_options_infill_overlap(const iso_options *options);
+/* Where the print's middle comes to lie: `center`, or the middle of the bed's box. */
+ISO_API iso_vec2 iso_options_center(const iso_options *options);
+
+#endif
