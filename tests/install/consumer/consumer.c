@@ -1,0 +1,10 @@
+#include <stdio.h>
+
+#include <isoslice/isoslice.h>
+
+int main(void) {
+    iso_bead bead = iso_bead_of(iso_units(0.45), iso_units(0.2));
+    printf("isoslice: a bead of %g x %g mm; %s\n", iso_mm(bead.width), iso_mm(bead.height),
+           iso_role_name(ISO_ROLE_PERIMETER));
+    return bead.area <= 0;
+}
