@@ -3,6 +3,7 @@
 #define ISOSLICE_ISOSLICE_H
 
 #include <isoslice/gcode.h>
+#include <isoslice/fill.h>
 #include <isoslice/geometry.h>
 #include <isoslice/mesh.h>
 #include <isoslice/path.h>

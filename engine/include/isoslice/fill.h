@@ -1,0 +1,45 @@
+/* Fill: lines over a region, joined to zigzags along its boundary.
+ *
+ * The region is where the middles of the beads may go, so it is already inset by the caller; for a
+ * solid fill by half a spacing from the edge of what is to be full. Lines end on its boundary, and
+ * a link between two lines follows the boundary: with every second end linked, the links and the
+ * half spacing around the region hold the same volume. */
+#ifndef ISOSLICE_FILL_H
+#define ISOSLICE_FILL_H
+
+#include <isoslice/geometry.h>
+#include <isoslice/path.h>
+#include <isoslice/planar.h>
+#include <isoslice/status.h>
+
+struct iso_arena; /* scratch memory, base/memory.h */
+
+typedef struct iso_fill_options {
+    double spacing; /* units between neighbouring lines, >= ISO_FILL_SPACING_MIN; kept to 1/256 */
+    double angle;   /* degrees counter-clockwise from x, the direction of the lines */
+    double phase;   /* units; line k is k spacing + phase to the left of the bed's origin */
+    int32_t fit;    /* nonzero: no phase; in every part lines go from edge to edge, their spacing
+                     * and flow changed (by 1/2n for n lines at most) so that they fill it */
+    int32_t width, area; /* of the bead, units and units^2 */
+    int32_t link_max;    /* units; longest piece of boundary that joins two lines; 0 = none */
+    int32_t deviation; /* units; a link goes straight if the boundary is nowhere further from it */
+    int32_t shortest;  /* units; paths shorter than this are left out */
+    iso_path like;     /* role, tool, speed class, object, group and rank of the paths */
+} iso_fill_options;
+
+/* Line spacing below this (10 um) is refused. */
+#define ISO_FILL_SPACING_MIN 100
+
+/* Lines bead.spacing / density apart, angle 0; fitted if density is 1; links up to 3 spacings,
+ * deviation 100 (10 um), shortest half a bead; role solid infill at density 1, else internal. */
+ISO_API iso_fill_options iso_fill_defaults(iso_bead bead, double density);
+
+/* Append the paths that fill `region` (clean contours, outer ones counter-clockwise, with parents)
+ * to `out`, part by part. Every piece of a sweep line inside the region is drawn exactly once.
+ * Ends lie within a unit of the boundary. O(points + crossings), and sorting on each line.
+ * ISO_USAGE for options or a region out of their range; on failure `out` is as before. */
+ISO_API iso_status iso_fill_rectilinear(iso_paths *out, const iso_region *region,
+                                        const iso_fill_options *options,
+                                        struct iso_arena *scratch) ISO_MUST_CHECK;
+
+#endif

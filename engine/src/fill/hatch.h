@@ -1,0 +1,39 @@
+/* A hatch: the lines of a sweep cut by the contours of one part of a region, as a contour-filling
+ * multi-link (link/fill_link.h) with its geometry. */
+#ifndef ISO_FILL_HATCH_H
+#define ISO_FILL_HATCH_H
+
+#include <isoslice/planar.h>
+
+#include "base/memory.h"
+#include "fill/crossing.h"
+#include "fill/sweep.h"
+#include "link/fill_link.h"
+
+/* One outer contour and the holes directly in it. */
+typedef struct iso_fill_part {
+    const iso_region *region;
+    const int32_t *member; /* [count] contours, the outer one first */
+    int32_t count;
+} iso_fill_part;
+
+typedef struct iso_hatch {
+    iso_fill_link link; /* p = index into part.member */
+    iso_crossing *crossing;
+    iso_fill_part part;
+} iso_hatch;
+
+/* The least and the greatest v of the part's outer contour. */
+void iso_hatch_extent(int64_t *low, int64_t *high, const iso_fill_part *part,
+                      const iso_sweep *sweep);
+
+/* `level` is room for as many integers as the region has points. Everything is pushed to `scratch`
+ * and lives until the caller pops it. */
+iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const iso_sweep *sweep,
+                           int32_t *level, iso_arena *scratch) ISO_MUST_CHECK;
+
+/* The points of the boundary's arc from `dart` to its other end, both ends left out, to `point`
+ * (room for the part's points). Returns how many, or -1 if the arc is longer than `longest`. */
+int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart, double longest);
+
+#endif

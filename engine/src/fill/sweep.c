@@ -1,0 +1,73 @@
+#include "fill/sweep.h"
+
+#include <math.h>
+
+/* Sine and cosine for 0 <= x <= pi / 4 from their series: the C library's differ from machine to
+ * machine. 9 terms leave less than 1e-16. */
+static void sine_cosine(double x, double *sine, double *cosine) {
+    double square = x * x, s = 1, c = 1;
+    for (int i = 9; i > 0; i--) {
+        s = 1 - s * square / (2 * i * (2 * i + 1));
+        c = 1 - c * square / (2 * i * (2 * i - 1));
+    }
+    *sine = s * x;
+    *cosine = c;
+}
+
+iso_sweep iso_sweep_of(double degrees) {
+    double turned = fmod(degrees, 180); /* exact */
+    if (turned < 0)
+        turned += 180;
+    if (turned >= 180) /* a tiny negative angle, rounded */
+        turned = 0;
+    int second = turned >= 90;
+    double rest = second ? turned - 90 : turned;
+    int steep = rest > 45;
+    double s, c, half = 0.70710678118654752440, pi = 3.14159265358979323846;
+    if (rest == 45)
+        s = c = half;
+    else
+        sine_cosine((steep ? 90 - rest : rest) * (pi / 180), &s, &c);
+    int64_t minor = (int64_t)(s * (1 << 30) + 0.5), major = (int64_t)(c * (1 << 30) + 0.5);
+    iso_sweep sweep = {.cosine = steep ? minor : major, .sine = steep ? major : minor};
+    if (second) {
+        int64_t sine = sweep.cosine;
+        sweep.cosine = -sweep.sine;
+        sweep.sine = sine;
+    }
+    if (sweep.sine > sweep.cosine && sweep.sine > -sweep.cosine)
+        sweep.along_y = 1;
+    else
+        sweep.along_x = sweep.cosine > 0 ? 1 : -1;
+    return sweep;
+}
+
+static int64_t floor_divide(int64_t a, int64_t b) {
+    int64_t q = a / b;
+    return q - (a % b < 0);
+}
+
+void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, int64_t low, int64_t high) {
+    int64_t origin = phase | 1;
+    int64_t from = floor_divide(low - origin, spacing) + 1;
+    int64_t to = floor_divide(high - origin, spacing); /* low and high are even: never on a line */
+    sweep->step = spacing;
+    sweep->first = origin + from * spacing;
+    sweep->count = to < from ? 0 : (int32_t)(to - from + 1);
+}
+
+void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high) {
+    /* An edge along the lines is straight to a unit only, so a line on it keeps two units off. */
+    int64_t inset = 2 * ISO_SWEEP_ONE, extent = high - low;
+    int64_t gaps = (extent + spacing / 2) / spacing;
+    sweep->count = (int32_t)gaps + 1;
+    if (high <= low) {
+        sweep->count = 0;
+    } else if (gaps == 0) {
+        sweep->first = (low + extent / 2) | 1;
+        sweep->step = spacing;
+    } else {
+        sweep->first = (low + inset) | 1;
+        sweep->step = (extent - 2 * inset) / gaps & ~(int64_t)1;
+    }
+}

@@ -1,0 +1,36 @@
+/* The sweep: a direction as a pair of integers, and the lines that run that way.
+ *
+ * v(p) = 2 (p.y cosine - p.x sine) is exact for every iso_point: with |x|, |y| <= 2^24 and cosines
+ * in 2^-30 it stays below 2^56. So the map into the sweep's frame is linear without any rounding, a
+ * clean region stays clean, and since v is even and the level of each line odd, no vertex is ever
+ * on a line. */
+#ifndef ISO_FILL_SWEEP_H
+#define ISO_FILL_SWEEP_H
+
+#include <isoslice/geometry.h>
+
+#define ISO_SWEEP_ONE ((int64_t)1 << 31) /* one unit of length in v */
+
+typedef struct iso_sweep {
+    int64_t cosine, sine; /* in 2^-30; sine >= 0 */
+    int32_t along_x;      /* along a line, along_x x + along_y y grows; one of both is 0 */
+    int32_t along_y;
+    int64_t first, step; /* v of line 0, odd; between lines, even */
+    int32_t count;       /* lines */
+} iso_sweep;
+
+/* The direction; no lines yet. Multiples of 45 degrees are exact. */
+iso_sweep iso_sweep_of(double degrees);
+
+static inline int64_t iso_sweep_v(const iso_sweep *sweep, iso_point p) {
+    return 2 * (p.y * sweep->cosine - p.x * sweep->sine);
+}
+
+/* Lines every `spacing` from `phase` on, those strictly between v = low and v = high. */
+void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, int64_t low, int64_t high);
+
+/* Lines about `spacing` apart, the first and the last on the edges; one in the middle if they are
+ * too near. */
+void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high);
+
+#endif
