@@ -5,6 +5,7 @@
 #include <isoslice/gcode.h>
 #include <isoslice/fill.h>
 #include <isoslice/geometry.h>
+#include <isoslice/link.h>
 #include <isoslice/mesh.h>
 #include <isoslice/path.h>
 #include <isoslice/planar.h>
