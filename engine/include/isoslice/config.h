@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <isoslice/gcode.h>
 #include <isoslice/geometry.h>
 #include <isoslice/path.h>
 #include <isoslice/status.h>
@@ -43,36 +44,20 @@ typedef struct iso_numbers {
     double value[ISO_NUMBERS_MAX];
 } iso_numbers;
 
-/* The words of each list, as ISO_PATTERN_GRID. */
-#define ISO_WORD(kind, constant, word) ISO_WORD_OF_##kind(ISO_##kind##_##constant)
-#define ISO_WORD_OF_PATTERN(constant) constant,
-#define ISO_WORD_OF_FLAVOR(constant)
-typedef enum iso_fill_pattern {
-#include <isoslice/options.inl>
-} iso_fill_pattern;
-#undef ISO_WORD_OF_PATTERN
-#undef ISO_WORD_OF_FLAVOR
-#define ISO_WORD_OF_PATTERN(constant)
-#define ISO_WORD_OF_FLAVOR(constant) constant,
-typedef enum iso_gcode_flavor {
-#include <isoslice/options.inl>
-} iso_gcode_flavor;
-#undef ISO_WORD_OF_PATTERN
-#undef ISO_WORD_OF_FLAVOR
-#undef ISO_WORD
+typedef enum iso_fill_pattern { ISO_PATTERN_RECTILINEAR, ISO_PATTERN_GRID } iso_fill_pattern;
 
 typedef enum iso_option_kind {
-    ISO_KIND_BOOL,     /* bool */
-    ISO_KIND_INTEGER,  /* int32_t */
-    ISO_KIND_NUMBER,   /* double, in the option's unit */
-    ISO_KIND_PERCENT,  /* double: 20 is 20 % */
-    ISO_KIND_RELATIVE, /* iso_relative */
-    ISO_KIND_PATTERN,  /* int32_t, an iso_fill_pattern */
-    ISO_KIND_FLAVOR,   /* int32_t, an iso_gcode_flavor */
-    ISO_KIND_TEXT,     /* char [ISO_TEXT_SIZE], lines end in '\n' */
-    ISO_KIND_PLACE,    /* iso_place */
-    ISO_KIND_POINTS,   /* iso_points */
-    ISO_KIND_NUMBERS   /* iso_numbers */
+    ISO_VALUE_BOOL,     /* bool */
+    ISO_VALUE_INTEGER,  /* int32_t */
+    ISO_VALUE_NUMBER,   /* double, in the option's unit */
+    ISO_VALUE_PERCENT,  /* double: 20 is 20 % */
+    ISO_VALUE_RELATIVE, /* iso_relative */
+    ISO_VALUE_PATTERN,  /* int32_t, an iso_fill_pattern */
+    ISO_VALUE_FLAVOUR,  /* int32_t, an iso_flavour */
+    ISO_VALUE_TEXT,     /* char [ISO_TEXT_SIZE], lines end in '\n' */
+    ISO_VALUE_PLACE,    /* iso_place */
+    ISO_VALUE_POINTS,   /* iso_points */
+    ISO_VALUE_NUMBERS   /* iso_numbers */
 } iso_option_kind;
 
 typedef struct iso_options {
@@ -82,7 +67,7 @@ typedef struct iso_options {
 #define ISO_FIELD_PERCENT(key) double key;
 #define ISO_FIELD_RELATIVE(key) iso_relative key;
 #define ISO_FIELD_PATTERN(key) int32_t key;
-#define ISO_FIELD_FLAVOR(key) int32_t key;
+#define ISO_FIELD_FLAVOUR(key) int32_t key;
 #define ISO_FIELD_TEXT(key) char key[ISO_TEXT_SIZE];
 #define ISO_FIELD_PLACE(key) iso_place key;
 #define ISO_FIELD_POINTS(key) iso_points key;

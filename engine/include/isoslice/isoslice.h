@@ -2,6 +2,7 @@
 #ifndef ISOSLICE_ISOSLICE_H
 #define ISOSLICE_ISOSLICE_H
 
+#include <isoslice/config.h>
 #include <isoslice/gcode.h>
 #include <isoslice/fill.h>
 #include <isoslice/geometry.h>
@@ -10,6 +11,7 @@
 #include <isoslice/path.h>
 #include <isoslice/planar.h>
 #include <isoslice/preview.h>
+#include <isoslice/report.h>
 #include <isoslice/slice.h>
 #include <isoslice/status.h>
 #include <isoslice/version.h>

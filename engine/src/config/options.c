@@ -8,7 +8,7 @@
 
 static const iso_option_info option_table[] = {
 #define ISO_OPTION(key, kind, initial, unit, min, max, category, help)                             \
-    {#key, ISO_KIND_##kind, initial, unit, min, max, category, help},
+    {#key, ISO_VALUE_##kind, initial, unit, min, max, category, help},
 #include "config/options.inl"
 #undef ISO_OPTION
 };
@@ -110,14 +110,14 @@ static void describe_range(char *text, size_t size, const iso_option_info *info)
     const char *unit = info->unit;
     size_t n = 0;
     switch (info->kind) {
-    case ISO_KIND_BOOL:
+    case ISO_VALUE_BOOL:
         snprintf(text, size, "0 or 1");
         break;
-    case ISO_KIND_TEXT:
+    case ISO_VALUE_TEXT:
         snprintf(text, size, "a text");
         break;
-    case ISO_KIND_PATTERN:
-    case ISO_KIND_FLAVOR:
+    case ISO_VALUE_PATTERN:
+    case ISO_VALUE_FLAVOUR:
         for (int32_t i = 0; iso_value_word(info->kind, i) && n < size; i++)
             n += (size_t)snprintf(text + n, size - n, "%s%s", i == 0 ? "" : ", ",
                                   iso_value_word(info->kind, i));
@@ -126,9 +126,9 @@ static void describe_range(char *text, size_t size, const iso_option_info *info)
         iso_number_write(low, info->min);
         iso_number_write(high, info->max);
         snprintf(text, size, "%s to %s%s%s%s", low, high, *unit ? " " : "", unit,
-                 info->kind != ISO_KIND_RELATIVE ? ""
-                 : info->min > 0                 ? ", or 1% to 1000%"
-                                                 : ", or 0% to 1000%");
+                 info->kind != ISO_VALUE_RELATIVE ? ""
+                 : info->min > 0                  ? ", or 1% to 1000%"
+                                                  : ", or 0% to 1000%");
     }
 }
 
@@ -165,14 +165,14 @@ size_t iso_options_format(char *text, size_t size, const iso_options *options, i
 }
 
 bool iso_options_is_default(const iso_options *options, int32_t option) {
-    char text[ISO_VALUE_SIZE];
+    char text[ISO_VALUE_TEXT_SIZE];
     iso_options_format(text, sizeof text, options, option);
     return strcmp(text, option_table[option].initial) == 0;
 }
 
 static iso_status print_options(const iso_options *options, bool only_changed,
                                 iso_option_printer *print, void *payload) {
-    char text[ISO_VALUE_SIZE];
+    char text[ISO_VALUE_TEXT_SIZE];
     for (int32_t i = 0; i < OPTION_COUNT; i++) {
         iso_options_format(text, sizeof text, options, i);
         if (!only_changed || strcmp(text, option_table[i].initial) != 0)

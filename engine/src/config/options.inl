@@ -9,15 +9,15 @@
  *
  *     BOOL  INTEGER  NUMBER  PERCENT
  *     RELATIVE                      in the unit, or in % of something that the help names
- *     PATTERN  FLAVOR               a word of the lists below
+ *     PATTERN  FLAVOUR              a word of the lists below
  *     TEXT  PLACE  POINTS  NUMBERS  min and max bound each coordinate or number
  */
 
-#ifdef ISO_WORD /* ISO_WORD(kind, constant, word) */
-ISO_WORD(PATTERN, RECTILINEAR, "rectilinear")
-ISO_WORD(PATTERN, GRID, "grid")
-ISO_WORD(FLAVOR, MARLIN2, "marlin2")
-ISO_WORD(FLAVOR, MARLIN, "marlin")
+#ifdef ISO_WORD /* ISO_WORD(kind, value, word) */
+ISO_WORD(PATTERN, ISO_PATTERN_RECTILINEAR, "rectilinear")
+ISO_WORD(PATTERN, ISO_PATTERN_GRID, "grid")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN2, "marlin2")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN, "marlin")
 #endif
 
 #ifdef ISO_OPTION
@@ -142,7 +142,7 @@ ISO_OPTION(max_print_height, NUMBER, "200", "mm", 0.1, 10000, "Printer",
            "Highest that the nozzle may go.")
 ISO_OPTION(center, PLACE, "", "mm", -1600, 1600, "Printer",
            "Where the middle of the print comes to lie, as X,Y. Empty: the middle of the bed.")
-ISO_OPTION(gcode_flavor, FLAVOR, "marlin2", "", 0, 0, "Printer", "Dialect of the G-code.")
+ISO_OPTION(gcode_flavor, FLAVOUR, "marlin2", "", 0, 0, "Printer", "Dialect of the G-code.")
 ISO_OPTION(use_relative_e_distances, BOOL, "1", "", 0, 1, "Printer",
            "Extrusion counts from the move before (M83), not from the start (M82).")
 ISO_OPTION(machine_max_acceleration_extruding, NUMBER, "1500", "mm/s2", 1, 100000, "Printer",

@@ -8,44 +8,47 @@ enum { PLACES = 9 };
 static const int64_t NANO = 1000000000;
 static const int64_t NUMBER_LIMIT = 1000000; /* so that value * 10^9 < 2^53 */
 
-typedef struct words {
+typedef struct word {
     iso_option_kind kind;
-    const char *word;
-} words;
+    int32_t value;
+    const char *text;
+} word;
 
-static const words all_words[] = {
-#define ISO_WORD(kind, constant, word) {ISO_KIND_##kind, word},
+static const word all_words[] = {
+#define ISO_WORD(kind, value, text) {ISO_VALUE_##kind, value, text},
 #include "config/options.inl"
 #undef ISO_WORD
 };
 
+enum { WORD_COUNT = sizeof all_words / sizeof *all_words };
+
 const char *iso_value_word(iso_option_kind kind, int32_t i) {
-    for (size_t w = 0; w < sizeof all_words / sizeof *all_words; w++)
+    for (int w = 0; w < WORD_COUNT; w++)
         if (all_words[w].kind == kind && i-- == 0)
-            return all_words[w].word;
+            return all_words[w].text;
     return NULL;
 }
 
 size_t iso_value_size(iso_option_kind kind) {
     switch (kind) {
-    case ISO_KIND_BOOL:
+    case ISO_VALUE_BOOL:
         return sizeof(bool);
-    case ISO_KIND_INTEGER:
-    case ISO_KIND_PATTERN:
-    case ISO_KIND_FLAVOR:
+    case ISO_VALUE_INTEGER:
+    case ISO_VALUE_PATTERN:
+    case ISO_VALUE_FLAVOUR:
         return sizeof(int32_t);
-    case ISO_KIND_NUMBER:
-    case ISO_KIND_PERCENT:
+    case ISO_VALUE_NUMBER:
+    case ISO_VALUE_PERCENT:
         return sizeof(double);
-    case ISO_KIND_RELATIVE:
+    case ISO_VALUE_RELATIVE:
         return sizeof(iso_relative);
-    case ISO_KIND_TEXT:
+    case ISO_VALUE_TEXT:
         return ISO_TEXT_SIZE;
-    case ISO_KIND_PLACE:
+    case ISO_VALUE_PLACE:
         return sizeof(iso_place);
-    case ISO_KIND_POINTS:
+    case ISO_VALUE_POINTS:
         return sizeof(iso_points);
-    case ISO_KIND_NUMBERS:
+    case ISO_VALUE_NUMBERS:
         return sizeof(iso_numbers);
     }
     return 0;
@@ -211,10 +214,10 @@ static const char *parse_relative(iso_relative *relative, const iso_option_info 
     return fits ? NULL : "is out of range";
 }
 
-static const char *parse_word(int32_t *index, iso_option_kind kind, const char *text) {
-    for (int32_t i = 0; iso_value_word(kind, i); i++) {
-        if (strcmp(text, iso_value_word(kind, i)) == 0) {
-            *index = i;
+static const char *parse_word(int32_t *value, iso_option_kind kind, const char *text) {
+    for (int w = 0; w < WORD_COUNT; w++) {
+        if (all_words[w].kind == kind && strcmp(text, all_words[w].text) == 0) {
+            *value = all_words[w].value;
             return NULL;
         }
     }
@@ -317,26 +320,26 @@ static const char *parse_numbers(iso_numbers *numbers, const iso_option_info *in
 
 const char *iso_value_parse(iso_value *value, const iso_option_info *info, const char *text) {
     switch (info->kind) {
-    case ISO_KIND_BOOL:
+    case ISO_VALUE_BOOL:
         return parse_bool(&value->flag, text);
-    case ISO_KIND_INTEGER:
+    case ISO_VALUE_INTEGER:
         return parse_integer(&value->integer, info, text);
-    case ISO_KIND_NUMBER:
+    case ISO_VALUE_NUMBER:
         return parse_number(&value->number, info, text);
-    case ISO_KIND_PERCENT:
+    case ISO_VALUE_PERCENT:
         return parse_percent(&value->number, info, text);
-    case ISO_KIND_RELATIVE:
+    case ISO_VALUE_RELATIVE:
         return parse_relative(&value->relative, info, text);
-    case ISO_KIND_PATTERN:
-    case ISO_KIND_FLAVOR:
+    case ISO_VALUE_PATTERN:
+    case ISO_VALUE_FLAVOUR:
         return parse_word(&value->integer, info->kind, text);
-    case ISO_KIND_TEXT:
+    case ISO_VALUE_TEXT:
         return parse_text(value->text, text);
-    case ISO_KIND_PLACE:
+    case ISO_VALUE_PLACE:
         return parse_place(&value->place, info, text);
-    case ISO_KIND_POINTS:
+    case ISO_VALUE_POINTS:
         return parse_points(&value->points, info, text);
-    case ISO_KIND_NUMBERS:
+    case ISO_VALUE_NUMBERS:
         return parse_numbers(&value->numbers, info, text);
     }
     return "has no kind";
@@ -381,6 +384,12 @@ static void put_pair(writer *out, double x, char separator, double y) {
     put_number(out, y);
 }
 
+static void put_word(writer *out, iso_option_kind kind, int32_t value) {
+    for (int w = 0; w < WORD_COUNT; w++)
+        if (all_words[w].kind == kind && all_words[w].value == value)
+            put_text(out, all_words[w].text);
+}
+
 static void put_relative(writer *out, const iso_relative *relative) {
     put_number(out, relative->value);
     if (relative->percent)
@@ -406,37 +415,37 @@ static void put_numbers(writer *out, const iso_numbers *numbers) {
 static void put_value(writer *out, const void *value, iso_option_kind kind) {
     const iso_place *place = value;
     switch (kind) {
-    case ISO_KIND_BOOL:
+    case ISO_VALUE_BOOL:
         put_char(out, *(const bool *)value ? '1' : '0');
         break;
-    case ISO_KIND_INTEGER:
+    case ISO_VALUE_INTEGER:
         put_number(out, *(const int32_t *)value);
         break;
-    case ISO_KIND_NUMBER:
+    case ISO_VALUE_NUMBER:
         put_number(out, *(const double *)value);
         break;
-    case ISO_KIND_PERCENT:
+    case ISO_VALUE_PERCENT:
         put_number(out, *(const double *)value);
         put_char(out, '%');
         break;
-    case ISO_KIND_RELATIVE:
+    case ISO_VALUE_RELATIVE:
         put_relative(out, value);
         break;
-    case ISO_KIND_PATTERN:
-    case ISO_KIND_FLAVOR:
-        put_text(out, iso_value_word(kind, *(const int32_t *)value));
+    case ISO_VALUE_PATTERN:
+    case ISO_VALUE_FLAVOUR:
+        put_word(out, kind, *(const int32_t *)value);
         break;
-    case ISO_KIND_TEXT:
+    case ISO_VALUE_TEXT:
         put_escaped(out, value);
         break;
-    case ISO_KIND_PLACE:
+    case ISO_VALUE_PLACE:
         if (place->given)
             put_pair(out, place->x, ',', place->y);
         break;
-    case ISO_KIND_POINTS:
+    case ISO_VALUE_POINTS:
         put_points(out, value);
         break;
-    case ISO_KIND_NUMBERS:
+    case ISO_VALUE_NUMBERS:
         put_numbers(out, value);
         break;
     }

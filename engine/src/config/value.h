@@ -6,7 +6,7 @@
 
 /* Longest text of a value, its end included: a text option with every byte escaped, or a full list
  * of numbers. */
-#define ISO_VALUE_SIZE 65536
+#define ISO_VALUE_TEXT_SIZE 65536
 
 /* Room for a value of any kind. */
 typedef union iso_value {

@@ -1,0 +1,229 @@
+#include <isoslice/report.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <isoslice/version.h>
+
+#include "base/memory.h"
+#include "config/json.h"
+
+void iso_report_free(iso_report *report) {
+    for (int32_t i = 0; i < report->input_count; i++)
+        iso_release(report->input[i].path);
+    for (int32_t i = 0; i < report->warning_count; i++)
+        iso_release(report->warning[i].message);
+    iso_release(report->input);
+    iso_release(report->stage);
+    iso_release(report->warning);
+    *report = (iso_report){0};
+}
+
+static iso_status copy_text(char **copy, const char *text) {
+    size_t size = strlen(text) + 1;
+    *copy = iso_allocate(size);
+    if (!*copy)
+        return iso_no_memory(size);
+    memcpy(*copy, text, size);
+    return ISO_OK;
+}
+
+iso_status iso_report_warn(iso_report *report, const char *code, const char *format, ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    ISO_TRY(ISO_GROW(report->warning, report->warning_capacity, report->warning_count + 1));
+    iso_report_warning *warning = &report->warning[report->warning_count];
+    ISO_TRY(copy_text(&warning->message, text));
+    warning->code = code;
+    report->warning_count++;
+    return ISO_OK;
+}
+
+/* "5 duplicate and 2 degenerate triangles dropped", of the counts that aren't zero */
+static iso_status warn_of_mending(iso_report *report, const char *path,
+                                  const iso_mesh_defects *found) {
+    const struct {
+        int64_t count;
+        const char *what;
+    } list[] = {{found->degenerate, "degenerate triangles dropped"},
+                {found->duplicate, "duplicate triangles dropped"},
+                {found->cancelled, "coincident faces dropped"},
+                {found->welded_vertices, "vertices welded"},
+                {found->flipped_triangles, "triangles turned over"},
+                {found->inverted_shells, "shells turned inside out"},
+                {found->holes_closed, "holes closed"}};
+    char text[512];
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        if (list[i].count > 0)
+            length +=
+                (size_t)snprintf(text + length, sizeof text - length, "%s%lld %s",
+                                 length > 0 ? ", " : "", (long long)list[i].count, list[i].what);
+    }
+    return length == 0 ? ISO_OK : iso_report_warn(report, "mesh-mended", "%s: %s", path, text);
+}
+
+iso_status iso_report_add_input(iso_report *report, const char *path, const iso_mesh *mesh) {
+    ISO_TRY(ISO_GROW(report->input, report->input_capacity, report->input_count + 1));
+    iso_report_input *input = &report->input[report->input_count];
+    ISO_TRY(copy_text(&input->path, path));
+    input->triangle_count = mesh->triangle_count;
+    input->vertex_count = mesh->vertex_count;
+    input->size =
+        (iso_vec3){mesh->max.x - mesh->min.x, mesh->max.y - mesh->min.y, mesh->max.z - mesh->min.z};
+    input->volume = iso_mesh_volume(mesh);
+    input->mesh_bytes = (int64_t)mesh->triangle_count * 3 * 2 * (int64_t)sizeof(int32_t) +
+                        (int64_t)mesh->vertex_count * (int64_t)sizeof(iso_vec3);
+    input->defects = mesh->defects;
+    report->input_count++;
+    return warn_of_mending(report, path, &mesh->defects);
+}
+
+iso_status iso_report_add_stage(iso_report *report, const char *name, double seconds,
+                                int64_t bytes) {
+    for (int32_t i = 0; i < report->stage_count; i++) {
+        iso_report_stage *stage = &report->stage[i];
+        if (strcmp(stage->name, name) != 0)
+            continue;
+        stage->seconds += seconds;
+        stage->bytes = bytes > stage->bytes ? bytes : stage->bytes;
+        return ISO_OK;
+    }
+    ISO_TRY(ISO_GROW(report->stage, report->stage_capacity, report->stage_count + 1));
+    report->stage[report->stage_count++] = (iso_report_stage){name, seconds, bytes};
+    return ISO_OK;
+}
+
+/* ---- as JSON ---- */
+
+static void write_defects(iso_json *json, const iso_mesh_defects *defects) {
+    iso_json_begin(json, "defects", '{');
+    iso_json_integer(json, "degenerate", defects->degenerate);
+    iso_json_integer(json, "duplicate", defects->duplicate);
+    iso_json_integer(json, "cancelled", defects->cancelled);
+    iso_json_integer(json, "bad_edges", defects->bad_edges);
+    iso_json_integer(json, "welded_vertices", defects->welded_vertices);
+    iso_json_integer(json, "flipped_triangles", defects->flipped_triangles);
+    iso_json_integer(json, "inverted_shells", defects->inverted_shells);
+    iso_json_integer(json, "holes_closed", defects->holes_closed);
+    iso_json_number(json, "cap_area_mm2", defects->cap_area);
+    iso_json_end(json, '}');
+}
+
+static void write_input(iso_json *json, const iso_report_input *input) {
+    iso_json_begin(json, NULL, '{');
+    iso_json_text(json, "file", input->path);
+    iso_json_integer(json, "triangles_read", input->defects.triangles_read);
+    iso_json_integer(json, "triangles", input->triangle_count);
+    iso_json_integer(json, "vertices", input->vertex_count);
+    iso_json_integer(json, "shells", input->defects.shells);
+    iso_json_begin(json, "size_mm", '[');
+    iso_json_number(json, NULL, input->size.x);
+    iso_json_number(json, NULL, input->size.y);
+    iso_json_number(json, NULL, input->size.z);
+    iso_json_end(json, ']');
+    iso_json_number(json, "volume_mm3", input->volume);
+    iso_json_integer(json, "memory_bytes", input->mesh_bytes);
+    write_defects(json, &input->defects);
+    iso_json_end(json, '}');
+}
+
+static iso_status write_option(void *payload, const char *key, const char *value) {
+    iso_json_text(payload, key, value);
+    return ISO_OK;
+}
+
+static void write_layers(iso_json *json, const iso_report *report) {
+    iso_json_begin(json, "layers", '{');
+    iso_json_integer(json, "count", report->layer_count);
+    iso_json_number(json, "height_mm", report->printed_height);
+    iso_json_number(json, "mesh_volume_mm3", report->mesh_volume);
+    iso_json_number(json, "sliced_volume_mm3", report->sliced_volume);
+    iso_json_end(json, '}');
+}
+
+static void write_stages(iso_json *json, const iso_report *report) {
+    iso_json_begin(json, "stages", '[');
+    for (int32_t i = 0; i < report->stage_count; i++) {
+        iso_json_begin(json, NULL, '{');
+        iso_json_text(json, "name", report->stage[i].name);
+        iso_json_number(json, "seconds", report->stage[i].seconds);
+        iso_json_integer(json, "bytes", report->stage[i].bytes);
+        iso_json_end(json, '}');
+    }
+    iso_json_end(json, ']');
+    iso_json_number(json, "seconds", report->seconds);
+    iso_json_integer(json, "peak_memory_kib", report->peak_memory_kib);
+    iso_json_integer(json, "threads", report->threads);
+}
+
+static void write_kernel(iso_json *json, const iso_planar_counts *kernel) {
+    iso_json_begin(json, "kernel", '{');
+    iso_json_integer(json, "operations", kernel->operations);
+    iso_json_integer(json, "untouched", kernel->untouched);
+    iso_json_integer(json, "arranged", kernel->arranged);
+    iso_json_integer(json, "edges", kernel->edges);
+    iso_json_integer(json, "collisions", kernel->collisions);
+    iso_json_end(json, '}');
+}
+
+static void write_print(iso_json *json, const iso_gcode_totals *print) {
+    iso_json_begin(json, "filament", '{');
+    iso_json_number(json, "mm", print->filament_mm);
+    iso_json_number(json, "cm3", print->filament_cm3);
+    iso_json_number(json, "g", print->filament_g);
+    iso_json_end(json, '}');
+    iso_json_begin(json, "print", '{');
+    iso_json_number(json, "seconds", print->time);
+    iso_json_number(json, "idle_seconds", print->idle_time);
+    iso_json_number(json, "bead_mm", print->bead_mm);
+    iso_json_number(json, "travel_mm", print->travel_mm);
+    iso_json_integer(json, "moves", print->moves);
+    iso_json_integer(json, "retractions", print->retractions);
+    iso_json_integer(json, "gcode_bytes", print->bytes);
+    iso_json_end(json, '}');
+}
+
+static void write_warnings(iso_json *json, const iso_report *report) {
+    iso_json_begin(json, "warnings", '[');
+    for (int32_t i = 0; i < report->warning_count; i++) {
+        iso_json_begin(json, NULL, '{');
+        iso_json_text(json, "code", report->warning[i].code);
+        iso_json_text(json, "message", report->warning[i].message);
+        iso_json_end(json, '}');
+    }
+    iso_json_end(json, ']');
+}
+
+iso_status iso_report_write(const iso_report *report, const iso_options *options, iso_status status,
+                            const char *message, const char *path) {
+    iso_output *output;
+    ISO_TRY(iso_output_open(&output, path));
+    iso_json json = {output, 0, false};
+    iso_json_begin(&json, NULL, '{');
+    iso_json_text(&json, "program", "isoslice " ISO_VERSION);
+    iso_json_integer(&json, "status", status);
+    iso_json_text(&json, "message", status == ISO_OK ? "" : message);
+    iso_json_begin(&json, "input", '[');
+    for (int32_t i = 0; i < report->input_count; i++)
+        write_input(&json, &report->input[i]);
+    iso_json_end(&json, ']');
+    iso_json_begin(&json, "options", '{');
+    iso_status printed = iso_options_print_changed(options, write_option, &json);
+    iso_json_end(&json, '}');
+    write_layers(&json, report);
+    write_stages(&json, report);
+    write_kernel(&json, &report->kernel);
+    write_print(&json, &report->print);
+    write_warnings(&json, report);
+    iso_json_end(&json, '}');
+    if (printed != ISO_OK) {
+        iso_output_abandon(output);
+        return printed;
+    }
+    return iso_output_commit(output);
+}
