@@ -107,11 +107,12 @@ static void copy_rotated(iso_path_vertex *to, const iso_path_vertex *from, int32
     memcpy(to + count - start, from, (size_t)start * sizeof *to);
 }
 
-/* The bead of vertex i ran from i to i + 1; backwards it runs from i + 1 to i. */
+/* The bead of vertex i ran from i to i + 1; backwards it runs from i + 1 to i. The end of the path
+ * keeps its own, which is never drawn: so reversing twice changes nothing. */
 static void copy_reversed(iso_path_vertex *to, const iso_path_vertex *from, int32_t count) {
     for (int32_t i = 0; i < count; i++) {
         to[i] = from[count - 1 - i];
-        int32_t bead = i + 1 < count ? count - 2 - i : 0;
+        int32_t bead = i + 1 < count ? count - 2 - i : count - 1;
         to[i].width = from[bead].width;
         to[i].area = from[bead].area;
     }
