@@ -1,0 +1,199 @@
+/* Offsets by a raw contour and winding numbers.
+ *
+ * Let the raw contour go from each edge's shifted copy to the next: around opening corners by a
+ * join, at closing corners back through the original vertex. It is then the contour plus, for every
+ * edge, the outline of the rectangle between the edge and its copy, and for every opening corner
+ * that of its sector. So the winding of a point is the region's own plus (growing) or less
+ * (shrinking) the number of rectangles and sectors around it, and winding >= 1 is the offset,
+ * exactly.
+ *
+ * A closing corner whose two copies meet within half of both edges is cut at once: the ear cut away
+ * lies in both rectangles, so every point loses one of two or more. (Half, so that the ears of an
+ * edge stay apart: on a ring of cut edges that all invert the count would come out one too high.)
+ */
+#include <math.h>
+
+#include <isoslice/planar.h>
+
+#include "planar/region.h"
+#include "planar/scratch.h"
+
+enum { ARC_DEPTH_MAX = 10 }; /* 2^10 chords at most in one join */
+
+typedef struct iso_side {
+    iso_vec2 along; /* unit vector of the edge */
+    iso_vec2 shift; /* unit vector towards the shifted copy */
+    double length;
+} iso_side;
+
+typedef struct iso_rawing {
+    iso_region *raw;
+    int64_t count;   /* points written in raw->point */
+    double distance; /* > 0 */
+    double sign;     /* 1 grows, -1 shrinks */
+    const iso_offset_options *options;
+} iso_rawing;
+
+iso_offset_options iso_offset_defaults(int32_t distance) {
+    return (iso_offset_options){
+        .distance = distance, .join = ISO_JOIN_MITRE, .mitre_limit = 2, .arc_tolerance = 50};
+}
+
+static double dot(iso_vec2 a, iso_vec2 b) {
+    return a.x * b.x + a.y * b.y;
+}
+
+static iso_side side_of(iso_point a, iso_point b, double sign) {
+    double dx = (double)b.x - a.x, dy = (double)b.y - a.y, length = sqrt(dx * dx + dy * dy);
+    iso_vec2 along = {dx / length, dy / length};
+    return (iso_side){along, {along.y * sign, -along.x * sign}, length};
+}
+
+/* Coordinates may leave int32 by at most the distance's mitre: clamp, edges_add will refuse them.
+ */
+static int32_t to_units(double x) {
+    double limit = 4.0 * ISO_COORDINATE_MAX;
+    return (int32_t)floor((x < -limit ? -limit : x > limit ? limit : x) + 0.5);
+}
+
+static iso_status put(iso_rawing *r, iso_point corner, iso_vec2 shift, double reach) {
+    ISO_TRY(ISO_GROW(r->raw->point, r->raw->point_capacity, r->count + 1));
+    r->raw->point[r->count++] =
+        (iso_point){to_units(corner.x + shift.x * reach), to_units(corner.y + shift.y * reach)};
+    return ISO_OK;
+}
+
+/* Unit vector half-way from a to b the short way; through `ahead` if they are opposite. */
+static iso_vec2 halfway(iso_vec2 a, iso_vec2 b, iso_vec2 ahead) {
+    iso_vec2 sum = {a.x + b.x, a.y + b.y};
+    double length = sqrt(dot(sum, sum));
+    return length < 1e-6 ? ahead : (iso_vec2){sum.x / length, sum.y / length};
+}
+
+/* Points of the arc between the shifts a and b, neither included, by halving: only square roots,
+ * and the same on every machine. */
+static iso_status put_arc(iso_rawing *r, iso_point corner, iso_vec2 a, iso_vec2 b, int depth) {
+    double cosine = dot(a, b), half = sqrt(cosine < -1 ? 0 : (1 + cosine) / 2);
+    if (depth == 0 || r->distance * (1 - half) <= r->options->arc_tolerance)
+        return ISO_OK;
+    iso_vec2 middle = halfway(a, b, (iso_vec2){-a.y * r->sign, a.x * r->sign});
+    ISO_TRY(put_arc(r, corner, a, middle, depth - 1));
+    ISO_TRY(put(r, corner, middle, r->distance));
+    return put_arc(r, corner, middle, b, depth - 1);
+}
+
+/* Cut square across the bisector at the distance: where that line meets the two copies. */
+static iso_status put_square(iso_rawing *r, iso_point corner, const iso_side *in,
+                             const iso_side *out) {
+    iso_vec2 middle = halfway(in->shift, out->shift, in->along);
+    double cosine = dot(in->shift, middle); /* of half the turn */
+    double sine = sqrt(cosine >= 1 ? 0 : 1 - cosine * cosine);
+    double slide = sine < 1e-9 ? 0 : r->distance * (1 - cosine) / sine;
+    iso_vec2 a = {in->shift.x * r->distance + in->along.x * slide,
+                  in->shift.y * r->distance + in->along.y * slide};
+    iso_vec2 b = {out->shift.x * r->distance - out->along.x * slide,
+                  out->shift.y * r->distance - out->along.y * slide};
+    ISO_TRY(put(r, corner, a, 1));
+    return put(r, corner, b, 1);
+}
+
+static iso_status put_opening(iso_rawing *r, iso_point corner, const iso_side *in,
+                              const iso_side *out, double cosine) {
+    double mitre = sqrt(2 / (1 + cosine)); /* tip's distance, in distances */
+    bool tip = r->distance * (mitre - 1) <= 0.5 ||
+               (r->options->join == ISO_JOIN_MITRE && mitre <= r->options->mitre_limit);
+    if (cosine > -0.999 && tip) {
+        iso_vec2 sum = {in->shift.x + out->shift.x, in->shift.y + out->shift.y};
+        return put(r, corner, sum, r->distance / (1 + cosine));
+    }
+    if (r->options->join != ISO_JOIN_ROUND)
+        return put_square(r, corner, in, out);
+    ISO_TRY(put(r, corner, in->shift, r->distance));
+    ISO_TRY(put_arc(r, corner, in->shift, out->shift, ARC_DEPTH_MAX));
+    return put(r, corner, out->shift, r->distance);
+}
+
+static iso_status put_corner(iso_rawing *r, iso_point corner, const iso_side *in,
+                             const iso_side *out) {
+    double cosine = dot(in->along, out->along);
+    double sine = in->along.x * out->along.y - in->along.y * out->along.x;
+    /* straight back: an opening corner of half a turn */
+    if (sine * r->sign > 0 || (cosine < 0 && fabs(sine) < 1e-12))
+        return put_opening(r, corner, in, out, cosine);
+    double trim = cosine > -0.999 ? r->distance * fabs(sine) / (1 + cosine) : INFINITY;
+    if (2 * trim <= in->length && 2 * trim <= out->length) {
+        iso_vec2 sum = {in->shift.x + out->shift.x, in->shift.y + out->shift.y};
+        return put(r, corner, sum, r->distance / (1 + cosine));
+    }
+    ISO_TRY(put(r, corner, in->shift, r->distance));
+    ISO_TRY(put(r, corner, in->shift, 0));
+    return put(r, corner, out->shift, r->distance);
+}
+
+static iso_status put_contour(iso_rawing *r, const iso_point *point, int32_t count) {
+    iso_side first = side_of(point[count - 1], point[0], r->sign), in = first;
+    for (int32_t i = 0; i < count; i++) {
+        iso_side out = i + 1 < count ? side_of(point[i], point[i + 1], r->sign) : first;
+        ISO_TRY(put_corner(r, point[i], &in, &out));
+        in = out;
+    }
+    return ISO_OK;
+}
+
+/* A shrunk outer contour that fits in a band of twice the distance is gone: don't even draw it. */
+static bool vanishes(const iso_point *point, int32_t count, double sign, double distance) {
+    if (sign > 0 || contour_double_area(point, count) < 0)
+        return false;
+    iso_point min = point[0], max = point[0];
+    for (int32_t i = 1; i < count; i++) {
+        min.x = point[i].x < min.x ? point[i].x : min.x;
+        min.y = point[i].y < min.y ? point[i].y : min.y;
+        max.x = point[i].x > max.x ? point[i].x : max.x;
+        max.y = point[i].y > max.y ? point[i].y : max.y;
+    }
+    return (double)max.x - min.x <= 2 * distance || (double)max.y - min.y <= 2 * distance;
+}
+
+static iso_status draw_raw(const iso_region *in, const iso_offset_options *options,
+                           iso_planar_scratch *scratch) {
+    iso_region *raw = &scratch->raw;
+    iso_rawing r = {.raw = raw, .options = options};
+    r.sign = options->distance < 0 ? -1 : 1;
+    r.distance = r.sign * (double)options->distance;
+    iso_region_clear(raw);
+    ISO_TRY(region_reserve(raw, in->count, in->count ? 2 * in->first[in->count] : 0));
+    for (int32_t c = 0; c < in->count; c++) {
+        const iso_point *point = in->point + in->first[c];
+        int32_t count = in->first[c + 1] - in->first[c];
+        if (count >= 3 && !vanishes(point, count, r.sign, r.distance))
+            ISO_TRY(put_contour(&r, point, count));
+        if (r.count > INT32_MAX)
+            return iso_fail(ISO_OUTSIDE, "an offset contour has too many points");
+        raw->parent[c] = -1;
+        raw->first[c + 1] = (int32_t)r.count;
+        raw->count = c + 1;
+    }
+    return ISO_OK;
+}
+
+static bool is_inside(iso_winding w) {
+    return w.of[0] > 0;
+}
+
+iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_options *options,
+                      iso_planar_scratch *scratch) {
+    iso_region_clear(out);
+    scratch->edges.count = 0;
+    if ((unsigned)options->join > ISO_JOIN_SQUARE || options->arc_tolerance < 1 ||
+        !(options->mitre_limit >= 1))
+        return iso_fail(ISO_USAGE,
+                        "an offset needs a join, an arc tolerance of at least 1 unit and "
+                        "a mitre limit of at least 1");
+    if (options->distance == 0) {
+        ISO_TRY(edges_add(&scratch->edges, in, 0));
+    } else {
+        ISO_TRY(draw_raw(in, options, scratch));
+        ISO_TRY(edges_add(&scratch->edges, &scratch->raw, 0));
+    }
+    return planar_resolve(out, is_inside, scratch);
+}

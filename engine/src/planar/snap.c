@@ -1,0 +1,341 @@
+#include "planar/snap.h"
+
+#include "base/sort.h"
+#include "planar/predicate.h"
+
+void snap_room_free(iso_snap_room *room) {
+    iso_release(room->split);
+    iso_release(room->crossing);
+    *room = (iso_snap_room){0};
+}
+
+typedef struct iso_snap {
+    iso_edges *edges;
+    iso_grid grid;
+    iso_snap_room *room;
+    int64_t collisions;
+} iso_snap;
+
+static void share_start(iso_snap *snap, int32_t slot) {
+    snap->edges->flags[slot] |= EDGE_SHARED_START;
+}
+
+static void share_end(iso_snap *snap, int32_t slot) {
+    share_start(snap, edges_next(snap->edges, slot));
+}
+
+/* The edge passes through `at`: a split, or at one of its ends a meeting. */
+static iso_status bend_through(iso_snap *snap, int32_t slot, iso_point at) {
+    if (point_equal(at, snap->edges->from[slot])) {
+        share_start(snap, slot);
+        return ISO_OK;
+    }
+    if (point_equal(at, snap->edges->to[slot])) {
+        share_end(snap, slot);
+        return ISO_OK;
+    }
+    iso_snap_room *room = snap->room;
+    ISO_TRY(ISO_GROW(room->split, room->split_capacity, room->split_count + 1));
+    room->split[room->split_count++] = (iso_split){slot, at};
+    return ISO_OK;
+}
+
+/* Does edge e (a -> b) meet the hot pixel of c, an end of edge f? `orientation` is orient2d(a, b,
+ * c). */
+static inline bool end_meets(iso_point a, iso_point b, iso_point c, int64_t orientation) {
+    return point_equal(c, a) || point_equal(c, b) || meets_pixel(a, b, c, orientation);
+}
+
+static iso_status keep_crossing(iso_snap *snap, int32_t e, int32_t f, iso_point at) {
+    iso_snap_room *room = snap->room;
+    ISO_TRY(ISO_GROW(room->crossing, room->crossing_capacity, room->crossing_count + 1));
+    room->crossing[room->crossing_count++] = at;
+    ISO_TRY(bend_through(snap, e, at));
+    return bend_through(snap, f, at);
+}
+
+/* Both ends of the other edge, and so all of it, lie on one side of the line ab, out of reach of
+ * the pixels of points on it. */
+static inline bool clear_of_line(iso_point a, iso_point b, int64_t oc, int64_t od) {
+    int64_t dx = (int64_t)b.x - a.x, dy = (int64_t)b.y - a.y;
+    int64_t reach = (dx < 0 ? -dx : dx) + (dy < 0 ? -dy : dy);
+    return (2 * oc > reach && 2 * od > reach) || (2 * oc < -reach && 2 * od < -reach);
+}
+
+static inline bool opposite_signs(int64_t a, int64_t b) {
+    return (a > 0 && b < 0) || (a < 0 && b > 0);
+}
+
+/* Two edges that are no neighbours and whose boxes meet. */
+static iso_status collide_strangers(iso_snap *snap, int32_t e, int32_t f) {
+    const iso_edges *edges = snap->edges;
+    iso_point a = edges->from[e], b = edges->to[e], c = edges->from[f], d = edges->to[f];
+    int64_t oc = orient2d(a, b, c), od = orient2d(a, b, d);
+    if (clear_of_line(a, b, oc, od))
+        return ISO_OK;
+    int64_t oa = orient2d(c, d, a), ob = orient2d(c, d, b);
+    if (clear_of_line(c, d, oa, ob))
+        return ISO_OK;
+    bool meet_a = end_meets(c, d, a, oa), meet_b = end_meets(c, d, b, ob);
+    bool meet_c = end_meets(a, b, c, oc), meet_d = end_meets(a, b, d, od);
+    bool crossing = opposite_signs(oa, ob) && opposite_signs(oc, od);
+    if (!(meet_a | meet_b | meet_c | meet_d | crossing))
+        return ISO_OK;
+    snap->collisions++;
+    if (crossing)
+        ISO_TRY(keep_crossing(snap, e, f, crossing_point(a, b, oa, ob)));
+    if (meet_a) {
+        share_start(snap, e);
+        ISO_TRY(bend_through(snap, f, a));
+    }
+    if (meet_b) {
+        share_end(snap, e);
+        ISO_TRY(bend_through(snap, f, b));
+    }
+    if (meet_c) {
+        share_start(snap, f);
+        ISO_TRY(bend_through(snap, e, c));
+    }
+    if (meet_d) {
+        share_end(snap, f);
+        ISO_TRY(bend_through(snap, e, d));
+    }
+    return ISO_OK;
+}
+
+/* f follows e. They meet at b by nature; what matters is whether one folds back onto the other. A
+ * turn of less than a right angle can't: a pixel of the far end d, at least a unit ahead of b,
+ * stays clear of e. */
+static iso_status collide_neighbours(iso_snap *snap, int32_t e, int32_t f) {
+    const iso_edges *edges = snap->edges;
+    iso_point a = edges->from[e], b = edges->to[e], d = edges->to[f];
+    int64_t ahead =
+        ((int64_t)b.x - a.x) * ((int64_t)d.x - b.x) + ((int64_t)b.y - a.y) * ((int64_t)d.y - b.y);
+    if (ahead > 0)
+        return ISO_OK;
+    bool meet_d = end_meets(a, b, d, orient2d(a, b, d));
+    bool meet_a = end_meets(b, d, a, orient2d(b, d, a));
+    if (!meet_a && !meet_d)
+        return ISO_OK;
+    snap->collisions++;
+    share_start(snap, f);
+    if (meet_a) {
+        share_start(snap, e);
+        ISO_TRY(bend_through(snap, f, a));
+    }
+    if (meet_d) {
+        share_end(snap, f);
+        ISO_TRY(bend_through(snap, e, d));
+    }
+    return ISO_OK;
+}
+
+static iso_status collide(iso_snap *snap, int32_t e, int32_t f) {
+    const iso_edges *edges = snap->edges;
+    bool e_first = edges_next(edges, e) == f, f_first = edges_next(edges, f) == e;
+    if (!e_first && !f_first)
+        return collide_strangers(snap, e, f);
+    if (e_first)
+        ISO_TRY(collide_neighbours(snap, e, f));
+    return f_first ? collide_neighbours(snap, f, e) : ISO_OK;
+}
+
+/* An edge in a cell, with its box at hand. */
+typedef struct iso_resident {
+    int32_t x0, y0, x1, y1;
+    int32_t slot;
+} iso_resident;
+
+static bool resident_less(const iso_resident *a, const iso_resident *b) {
+    return a->x0 != b->x0 ? a->x0 < b->x0 : a->slot < b->slot;
+}
+ISO_SORT(sort_residents, iso_resident, resident_less)
+
+static int32_t fetch_residents(iso_resident *out, const iso_snap *snap, int32_t layer,
+                               int32_t cell) {
+    const iso_edges *edges = snap->edges;
+    const iso_grid_layer *l = &snap->grid.layer[layer];
+    int32_t n = 0;
+    for (int32_t i = l->first[cell]; i < l->first[cell + 1]; i++) {
+        int32_t slot = l->slot[i];
+        if (edges->flags[slot] & EDGE_DEAD)
+            continue;
+        iso_point a = edges->from[slot], b = edges->to[slot];
+        out[n++] = (iso_resident){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y,
+                                  a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, slot};
+    }
+    return n;
+}
+
+static bool boxes_meet(const iso_resident *a, const iso_resident *b) {
+    return (a->x0 <= b->x1) & (b->x0 <= a->x1) & (a->y0 <= b->y1) & (b->y0 <= a->y1);
+}
+
+enum { CROWD = 24 }; /* residents from which sorting pays */
+
+static iso_status collide_within(iso_snap *snap, iso_resident *resident, int32_t count) {
+    bool sorted = count > CROWD;
+    if (sorted)
+        sort_residents(resident, count);
+    for (int32_t i = 0; i < count; i++) {
+        for (int32_t j = i + 1; j < count; j++) {
+            if (sorted && resident[j].x0 > resident[i].x1)
+                break;
+            if (boxes_meet(&resident[i], &resident[j]))
+                ISO_TRY(collide(snap, resident[i].slot, resident[j].slot));
+        }
+    }
+    return ISO_OK;
+}
+
+/* All fresh edges against the residents of older layers. */
+static iso_status collide_between(iso_snap *snap, const iso_resident *fresh, int32_t fresh_count,
+                                  const iso_resident *old, int32_t old_count) {
+    for (int32_t i = 0; i < fresh_count; i++)
+        for (int32_t j = 0; j < old_count; j++)
+            if (boxes_meet(&fresh[i], &old[j]))
+                ISO_TRY(collide(snap, fresh[i].slot, old[j].slot));
+    return ISO_OK;
+}
+
+static int32_t largest_cell(const iso_grid *grid) {
+    int32_t largest = 0, cells = grid->columns * grid->rows;
+    for (int32_t l = 0; l < grid->layer_count; l++) {
+        const int32_t *first = grid->layer[l].first;
+        for (int32_t c = 0; c < cells; c++)
+            largest = first[c + 1] - first[c] > largest ? first[c + 1] - first[c] : largest;
+    }
+    return largest;
+}
+
+/* Collide the edges of the newest layer with each other and with all others. */
+static iso_status find_collisions(iso_snap *snap, iso_arena *arena) {
+    const iso_grid *grid = &snap->grid;
+    int32_t newest = grid->layer_count - 1, cells = grid->columns * grid->rows;
+    int32_t room = largest_cell(grid);
+    iso_resident *fresh, *old;
+    ISO_TRY(ISO_PUSH(fresh, arena, room));
+    ISO_TRY(ISO_PUSH(old, arena, room));
+    const int32_t *first = grid->layer[newest].first;
+    for (int32_t cell = 0; cell < cells; cell++) {
+        if (first[cell] == first[cell + 1])
+            continue;
+        int32_t count = fetch_residents(fresh, snap, newest, cell);
+        ISO_TRY(collide_within(snap, fresh, count));
+        for (int32_t l = 0; l < newest; l++)
+            ISO_TRY(collide_between(snap, fresh, count, old, fetch_residents(old, snap, l, cell)));
+    }
+    return ISO_OK;
+}
+
+static bool point_before(const iso_point *a, const iso_point *b) {
+    return point_less(*a, *b);
+}
+ISO_SORT(sort_points, iso_point, point_before)
+
+/* A crossing is a hot pixel for every edge near it, not just for the two that cross. */
+static iso_status heat_crossings(iso_snap *snap) {
+    iso_snap_room *room = snap->room;
+    const iso_grid *grid = &snap->grid;
+    const iso_edges *edges = snap->edges;
+    sort_points(room->crossing, room->crossing_count);
+    for (int64_t i = 0; i < room->crossing_count; i++) {
+        iso_point at = room->crossing[i];
+        if (i > 0 && point_equal(at, room->crossing[i - 1]))
+            continue;
+        int32_t cell = grid_cell(grid, at);
+        for (int32_t l = 0; l < grid->layer_count; l++) {
+            const iso_grid_layer *layer = &grid->layer[l];
+            for (int32_t k = layer->first[cell]; k < layer->first[cell + 1]; k++) {
+                int32_t slot = layer->slot[k];
+                iso_point a = edges->from[slot], b = edges->to[slot];
+                if (!(edges->flags[slot] & EDGE_DEAD) && box_holds(a, b, at) &&
+                    end_meets(a, b, at, orient2d(a, b, at)))
+                    ISO_TRY(bend_through(snap, slot, at));
+            }
+        }
+    }
+    return ISO_OK;
+}
+
+static bool split_less(const iso_split *a, const iso_split *b) {
+    return a->slot != b->slot ? a->slot < b->slot : point_less(a->at, b->at);
+}
+ISO_SORT(sort_splits, iso_split, split_less)
+
+/* `split` holds the edge's new vertices, each possibly more than once, in its order or the reverse
+ * of it. */
+static iso_status split_edge(iso_edges *edges, const iso_split *split, int64_t count) {
+    int32_t slot = split[0].slot;
+    iso_point from = edges->from[slot], to = edges->to[slot];
+    uint8_t operand = edges->flags[slot] & EDGE_OPERAND;
+    uint8_t start_flags = edges->flags[slot];
+    bool forward = from.x != to.x ? from.x < to.x : from.y < to.y;
+    int32_t first = edges->count;
+    for (int64_t i = 0; i <= count; i++) {
+        iso_point at = to;
+        if (i < count) {
+            at = split[forward ? i : count - 1 - i].at;
+            if (point_equal(at, from))
+                continue; /* found more than once */
+        }
+        ISO_TRY(edges_push(edges, from, at, i == 0 ? start_flags : operand | EDGE_SHARED_START));
+        edges->successor[edges->count - 1] = edges->count;
+        from = at;
+    }
+    edges->successor[edges->count - 1] = edges->successor[slot];
+    edges->successor[slot] = first;
+    edges->flags[slot] |= EDGE_DEAD;
+    return ISO_OK;
+}
+
+/* The pixels an edge meets lie along it in a staircase, so lexicographic order is the edge's own or
+ * its reverse if it rises; if it falls, the steps within one x run the other way. */
+static void order_falling(iso_split *split, int64_t count) {
+    for (int64_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && split[end].at.x == split[i].at.x;)
+            end++;
+        for (int64_t l = i, r = end - 1; l < r; l++, r--) {
+            iso_split t = split[l];
+            split[l] = split[r];
+            split[r] = t;
+        }
+    }
+}
+
+static iso_status apply_splits(iso_snap *snap) {
+    iso_snap_room *room = snap->room;
+    iso_edges *edges = snap->edges;
+    sort_splits(room->split, room->split_count);
+    for (int64_t i = 0, end; i < room->split_count; i = end) {
+        int32_t slot = room->split[i].slot;
+        for (end = i + 1; end < room->split_count && room->split[end].slot == slot;)
+            end++;
+        iso_point a = edges->from[slot], b = edges->to[slot];
+        if ((a.x < b.x && a.y > b.y) || (a.x > b.x && a.y < b.y))
+            order_falling(room->split + i, end - i);
+        ISO_TRY(split_edge(edges, room->split + i, end - i));
+    }
+    return ISO_OK;
+}
+
+iso_status snap_round(iso_edges *edges, int64_t *collisions, iso_snap_room *room,
+                      iso_arena *arena) {
+    *collisions = 0;
+    if (edges->count == 0)
+        return ISO_OK;
+    iso_snap snap = {.edges = edges, .room = room};
+    ISO_TRY(grid_build(&snap.grid, edges, arena));
+    for (;;) {
+        room->split_count = room->crossing_count = 0;
+        ISO_TRY(find_collisions(&snap, arena));
+        ISO_TRY(heat_crossings(&snap));
+        if (room->split_count == 0)
+            break;
+        int32_t fresh = edges->count;
+        ISO_TRY(apply_splits(&snap));
+        ISO_TRY(grid_add_layer(&snap.grid, edges, fresh, arena));
+    }
+    *collisions = snap.collisions;
+    return ISO_OK;
+}
