@@ -37,7 +37,8 @@ def unpack(folder):
         name = archive.name.rsplit("-", 1)[0]
         (folder / name).mkdir()
         subprocess.run(["tar", "-xzf", archive, "-C", folder / name], check=True)
-    subprocess.run(["apt-get", "download", "-qq", "prusa-slicer"], cwd=folder, check=True)
+    subprocess.run(["apt-get", "download", "-qq", "-o", "APT::Sandbox::User=root",
+                    "prusa-slicer"], cwd=folder, check=True)
     package = next(folder.glob("prusa-slicer_*.deb"))
     subprocess.run(["dpkg-deb", "-x", package, folder / "prusa"], check=True)
 
@@ -109,7 +110,6 @@ def main():
         return
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        folder.chmod(0o755)  # apt fetches as a user of its own
         unpack(folder)
         for name in missing:
             archive, member, longest = MODELS[name]
