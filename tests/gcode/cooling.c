@@ -1,0 +1,151 @@
+#include "gcode/cooling.h"
+
+#include "check.h"
+
+enum {
+    OUTER = 2 * ISO_ROLE_EXTERNAL_PERIMETER,
+    INNER = 2 * ISO_ROLE_PERIMETER,
+    BRIDGE = 2 * ISO_ROLE_BRIDGE_INFILL
+};
+
+static iso_gcode_options usual(void) {
+    iso_gcode_options o = iso_gcode_defaults();
+    o.speed[ISO_ROLE_EXTERNAL_PERIMETER] = 30;
+    o.speed[ISO_ROLE_PERIMETER] = 60;
+    o.speed[ISO_ROLE_BRIDGE_INFILL] = 20;
+    o.small_perimeter_speed = 15;
+    o.first_layer_speed = 25;
+    o.slowdown_below_layer_time = 5;
+    o.fan_below_layer_time = 65;
+    o.min_print_speed = 10;
+    o.min_fan_speed = 40;
+    o.max_fan_speed = 100;
+    o.bridge_fan_speed = 80;
+    o.disable_fan_first_layers = 3;
+    return o;
+}
+
+static void test_speeds_of_long_layers(void) {
+    iso_gcode_options o = usual();
+    iso_layer_work work = {.length = {[OUTER] = 3000, [INNER] = 3000}};
+    iso_layer_pace pace;
+    iso_cooling_pace(&pace, &work, &o, 7);
+    CHECK_EQUAL(1800, pace.feed[OUTER]);
+    CHECK_EQUAL(900, pace.feed[OUTER + 1]);
+    CHECK_EQUAL(3600, pace.feed[INNER]);
+    CHECK_NEAR(150, pace.time, 1e-9);
+    CHECK_EQUAL(0, pace.fan);
+    CHECK_EQUAL(80, pace.bridge_fan);
+    iso_cooling_pace(&pace, &work, &o, 0);
+    CHECK_EQUAL(1500, pace.feed[OUTER]);
+    CHECK_EQUAL(900, pace.feed[OUTER + 1]);
+    CHECK_EQUAL(1500, pace.feed[INNER]);
+    CHECK_EQUAL(0, pace.bridge_fan);
+}
+
+static void test_short_layers_take_the_least_time(void) {
+    iso_gcode_options o = usual();
+    iso_layer_work work = {.length = {[OUTER] = 30, [INNER] = 60}, .other_time = 1};
+    iso_layer_pace pace;
+    iso_cooling_pace(&pace, &work, &o, 7); /* 2 s of printing to fill 4 s */
+    CHECK_EQUAL(900, pace.feed[OUTER]);
+    CHECK_EQUAL(1800, pace.feed[INNER]);
+    CHECK_NEAR(5, pace.time, 1e-9);
+    CHECK_EQUAL(100, pace.fan);
+}
+
+static void test_no_slower_than_the_least_speed(void) {
+    iso_gcode_options o = usual();
+    iso_layer_work work = {.length = {[OUTER] = 30, [INNER] = 6}};
+    iso_layer_pace pace;
+    iso_cooling_pace(&pace, &work, &o, 7);
+    CHECK_EQUAL(600, pace.feed[OUTER]);
+    CHECK_EQUAL(600, pace.feed[INNER]);
+    CHECK_NEAR(3.6, pace.time, 1e-9);
+    /* the outer wall stops at 10 mm/s (3 s), the inner one makes up the other 2 s */
+    work.length[INNER] = 40;
+    iso_cooling_pace(&pace, &work, &o, 7);
+    CHECK_EQUAL(600, pace.feed[OUTER]);
+    CHECK_EQUAL(1200, pace.feed[INNER]);
+    CHECK_NEAR(5, pace.time, 1e-9);
+}
+
+static void test_bridges_and_slow_roles_stay(void) {
+    iso_gcode_options o = usual();
+    o.speed[ISO_ROLE_EXTERNAL_PERIMETER] = 8;
+    iso_layer_work work = {.length = {[OUTER] = 8, [BRIDGE] = 20, [INNER] = 60}};
+    iso_layer_pace pace;
+    iso_cooling_pace(&pace, &work, &o, 7);
+    CHECK_EQUAL(480, pace.feed[OUTER]);
+    CHECK_EQUAL(1200, pace.feed[BRIDGE]);
+    CHECK_EQUAL(1200, pace.feed[INNER]);
+    CHECK_NEAR(5, pace.time, 1e-9);
+}
+
+static void test_never_shorter_than_asked(void) {
+    iso_gcode_options o = usual();
+    uint64_t seed = 9;
+    for (int i = 0; i < 5000; i++) {
+        iso_layer_work work = {0};
+        for (int s = 0; s < ISO_SPEED_SLOTS; s++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            work.length[s] = seed >> 60 < 4 ? (double)(seed >> 20 & 0xffff) / 2500 : 0;
+        }
+        iso_layer_pace pace, plain;
+        o.cooling = 0;
+        iso_cooling_pace(&plain, &work, &o, 7);
+        o.cooling = 1;
+        iso_cooling_pace(&pace, &work, &o, 7);
+        int free_slots = 0;
+        for (int s = 0; s < ISO_SPEED_SLOTS; s++) {
+            CHECK(pace.feed[s] <= plain.feed[s]);
+            CHECK(pace.feed[s] >= 600 || pace.feed[s] == plain.feed[s]);
+            int bridge = s / 2 == ISO_ROLE_BRIDGE_INFILL || s / 2 == ISO_ROLE_OVERHANG_PERIMETER;
+            CHECK(!bridge || pace.feed[s] == plain.feed[s]);
+            free_slots += work.length[s] > 0 && pace.feed[s] > 600 && !bridge;
+        }
+        if (plain.time < 5 && free_slots > 0)
+            CHECK(pace.time >= 5 - 1e-9 && pace.time < 5.02);
+        if (plain.time >= 5)
+            CHECK(pace.time == plain.time);
+    }
+}
+
+static void test_fan_by_layer_time(void) {
+    iso_gcode_options o = usual();
+    iso_layer_work work = {.length = {[INNER] = 60 * 35}};
+    iso_layer_pace pace;
+    iso_cooling_pace(&pace, &work, &o, 3);
+    CHECK_EQUAL(70, pace.fan); /* half way between 5 and 65 s */
+    iso_cooling_pace(&pace, &work, &o, 2);
+    CHECK_EQUAL(0, pace.fan);
+    o.fan_always_on = 1;
+    work.length[INNER] = 60 * 70;
+    iso_cooling_pace(&pace, &work, &o, 3);
+    CHECK_EQUAL(40, pace.fan);
+    o.cooling = 0;
+    work.length[INNER] = 60;
+    iso_cooling_pace(&pace, &work, &o, 3);
+    CHECK_EQUAL(40, pace.fan);
+    CHECK_EQUAL(3600, pace.feed[INNER]);
+}
+
+static void test_empty_layer(void) {
+    iso_gcode_options o = usual();
+    iso_layer_work work = {0};
+    iso_layer_pace pace;
+    iso_cooling_pace(&pace, &work, &o, 5);
+    CHECK_NEAR(0, pace.time, 0);
+    CHECK_EQUAL(3600, pace.feed[INNER]);
+}
+
+int main(void) {
+    RUN(test_speeds_of_long_layers);
+    RUN(test_short_layers_take_the_least_time);
+    RUN(test_no_slower_than_the_least_speed);
+    RUN(test_bridges_and_slow_roles_stay);
+    RUN(test_never_shorter_than_asked);
+    RUN(test_fan_by_layer_time);
+    RUN(test_empty_layer);
+    return check_verdict();
+}
