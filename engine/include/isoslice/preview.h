@@ -18,11 +18,11 @@ typedef struct iso_preview_options {
 
 ISO_API iso_preview_options iso_preview_defaults(void);
 
-/* Read G-code (G0 to G3 by I and J, G28, G90 to G92, M82, M83 and the comments ;LAYER_CHANGE, ;TYPE:, ;WIDTH:,
- * ;HEIGHT:) and draw the chosen layers, seen from above: each bead at its width, coloured by its
- * role, travels as thin lines, with a legend and a scale in mm. A bead without a ;WIDTH: gets the
- * width of a stadium (docs/flow.md) that holds its filament. Without ;LAYER_CHANGE a layer begins
- * where a bead has another z than the bead before.
+/* Read G-code (G0 to G3 by I and J, G28, G90 to G92, M82, M83 and the comments ;LAYER_CHANGE,
+ * ;TYPE:, ;WIDTH:, ;HEIGHT:) and draw the chosen layers, seen from above: each bead at its width,
+ * coloured by its role, travels as thin lines, with a legend and a scale in mm. A bead without a
+ * ;WIDTH: gets the width of a stadium (docs/flow.md) that holds its filament. Without ;LAYER_CHANGE
+ * a layer begins where a bead has another z than the bead before.
  *
  * "-" is standard input, or standard output. Inside a panel one SVG unit is 10 um and the beads are
  * <g class="role-N"> with N an iso_role.
