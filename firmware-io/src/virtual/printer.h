@@ -1,0 +1,92 @@
+/* The inside of the virtual printer. */
+#ifndef FIO_VIRTUAL_PRINTER_H
+#define FIO_VIRTUAL_PRINTER_H
+
+#include <isoprint/virtual_printer.h>
+
+#include "base/text.h"
+#include "virtual/heater.h"
+#include "virtual/line.h"
+#include "virtual/planner.h"
+
+/* Lines that wait for their place in the log: a power of two. The planner is made to move on before
+ * an entry is overwritten, whether there is a log or not, so that a log changes no time. */
+enum { FIO_PENDING = 256 };
+
+typedef struct fio_pending {
+    fio_executed executed;
+    int blocks; /* still in the planner */
+    bool started, dropped;
+    char text[FIO_LINE_MOST + 1];
+} fio_pending;
+
+struct fio_virtual_printer {
+    fio_virtual_options options;
+    fio_limits limits;
+    fio_planner planner;
+    fio_heater nozzle[FIO_TOOLS_MOST], bed;
+    fio_statistics statistics;
+
+    double clock;       /* s; end of the last block taken */
+    double machine[3];  /* after all lines read */
+    double offset[3];   /* logical = machine + offset */
+    double e;           /* logical */
+    double unit_length; /* 1, or 25.4 after G20 */
+    bool homed[3], absolute, absolute_extrusion, end_stops, halted, finished;
+    bool allow_cold;
+    double feedrate, feedrate_percent, flow_percent; /* feedrate 0: none given yet */
+    double extrusion_minimum_temperature;
+    double fan;
+    double firmware_retract[2], firmware_retracted; /* mm now retracted by G10 */
+    int tool, progress_percent, minutes_left;
+
+    double extrusion_z; /* of the last level extrusion */
+    double filament_area;
+
+    int64_t line;        /* being executed: 1 = the first */
+    uint32_t line_codes; /* events already told of it */
+    int64_t last_number, lost_line;
+    fio_reply *reply;
+    void *reply_context;
+
+    fio_execution_log log;
+    int64_t sequence, logged; /* commands executed; of them, logged */
+    bool open;                /* command `sequence` is being executed */
+    double log_clock;         /* end of the last entry */
+
+    fio_event faults[FIO_EVENTS_KEPT], warnings[FIO_EVENTS_KEPT];
+    fio_pending pending[FIO_PENDING];
+};
+
+/* event.c: one event of each code a line. `text` may be given in two parts with a number between.
+ */
+void fio_printer_event(fio_virtual_printer *printer, fio_event_code code, const char *text);
+void fio_printer_event_value(fio_virtual_printer *printer, fio_event_code code, const char *before,
+                             double value, const char *after);
+void fio_printer_say(fio_virtual_printer *printer, const char *text);
+
+/* motion.c */
+void fio_printer_start_entry(fio_virtual_printer *printer, const fio_line *line);
+void fio_printer_end_entry(fio_virtual_printer *printer);
+void fio_printer_drain(fio_virtual_printer *printer);
+void fio_printer_abandon(fio_virtual_printer *printer); /* the planner's moves are never made */
+/* Drain, then let `seconds` pass. */
+void fio_printer_wait(fio_virtual_printer *printer, double seconds, fio_activity activity);
+/* Move to machine coordinates and by `extrusion` (before flow_percent), clamped, planned, counted.
+ */
+void fio_printer_move(fio_virtual_printer *printer, const double target[3], double extrusion,
+                      double feedrate);
+void fio_printer_home(fio_virtual_printer *printer, const bool axes[3]);
+
+/* Read X Y Z E F: the machine target and the extrusion; tells of bad words. */
+double fio_printer_target(fio_virtual_printer *printer, const fio_line *line, double target[3]);
+double fio_printer_feedrate(const fio_virtual_printer *printer); /* mm/s now */
+
+/* arc.c */
+void fio_printer_arc(fio_virtual_printer *printer, const fio_line *line, bool clockwise);
+
+/* command.c, setting.c: false if the command is unknown. */
+bool fio_printer_command(fio_virtual_printer *printer, fio_line *line);
+bool fio_printer_setting(fio_virtual_printer *printer, const fio_line *line);
+
+#endif
