@@ -207,8 +207,7 @@ iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b) {
     iso_release(b->head);
     iso_release(b->table);
     b->head = b->table = NULL;
-    bool closed = b->open == 0 && b->excess == 0;
-    iso_status status = iso_mesh_repair(&b->mesh, closed);
+    iso_status status = iso_mesh_repair(&b->mesh, b->open, b->excess);
     if (status == ISO_OK) {
         *mesh = b->mesh;
         b->mesh = (iso_mesh){0};
