@@ -24,8 +24,8 @@ ISO_API iso_preview_options iso_preview_defaults(void);
  * ;WIDTH: gets the width of a stadium (docs/flow.md) that holds its filament. Without ;LAYER_CHANGE
  * a layer begins where a bead has another z than the bead before.
  *
- * "-" is standard input, or standard output. Inside a panel one SVG unit is 10 um and the beads are
- * <g class="role-N"> with N an iso_role.
+ * "-" is standard input, or standard output. In a layer's picture one SVG unit is 10 um, and
+ * <use class="role-N"> are beads, with N an iso_role.
  * ISO_UNREADABLE: no file, nothing that prints in it, a coordinate beyond 10 m.
  * ISO_USAGE: a layer that the file does not have. */
 ISO_API iso_status iso_preview_svg(const char *svg_path, const char *gcode_path,
