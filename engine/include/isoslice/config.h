@@ -105,20 +105,24 @@ ISO_API void iso_options_defaults(iso_options *options);
 ISO_API iso_status iso_options_set(iso_options *options, const char *key, const char *value,
                                    const char *where) ISO_MUST_CHECK;
 
-/* What a file had that isn't ours: its keys, and words of a list that we don't know (the option
- * then keeps its value). One line, comma-separated, cut off with "..." if it gets too long. */
+/* What files had that isn't ours: keys we don't know; and what they say for a key of ours that we
+ * can't follow (a word of a list that we don't have, a parent that isn't there), so that the option
+ * keeps its value. Each once, comma-separated; what doesn't fit is counted alone. Zero-initialise.
+ */
 typedef struct iso_config_notes {
     int32_t unknown_count, unused_count;
-    char unknown[512]; /* keys */
-    char unused[512];  /* "key = word" */
+    char unknown[16384]; /* "key, key" */
+    char unused[2048];   /* "key = word, key = word" */
 } iso_config_notes;
 
-/* Read a configuration: a flat ini file of `key = value` lines; a bundle with [print:NAME]
- * sections, of which `sections` are taken; or the block of settings at the end of a G-code file.
- * `path` may be followed by the names of sections, as "bundle.ini:print:0.20mm Fine:filament:PLA";
- * each section's `inherits` come before it. Lines behind the first win. Notes are added to `notes`.
- * A list where a number is due, one value per extruder, gives its first. ISO_UNREADABLE: no such
- * file; ISO_BAD_CONFIG: names file and line. On failure the options are as before. */
+/* Read a configuration: a flat ini file of `key = value` lines; a bundle with [print:NAME],
+ * [filament:NAME] and [printer:NAME] sections; or the settings at the end of a G-code file.
+ *
+ * Of a bundle, `path` says which sections to take, as "bundle.ini:print:0.20mm:filament:PLA"; else
+ * its [presets] section does. What a section `inherits` comes before it. Later lines win. A list
+ * where a number is due, one value per extruder, gives its first. Notes are added to `notes`.
+ * ISO_UNREADABLE: no such file; ISO_BAD_CONFIG: names file and line. On failure the options are as
+ * before. */
 ISO_API iso_status iso_options_read(iso_options *options, const char *path,
                                     iso_config_notes *notes) ISO_MUST_CHECK;
 

@@ -158,9 +158,9 @@ int iso_number_write(char text[32], double number) {
 /* ---- reading ---- */
 
 static const char *parse_bool(bool *flag, const char *text) {
-    static const char *const word[] = {"0", "1", "false", "true", "no", "yes", "off", "on"};
-    for (size_t i = 0; i < sizeof word / sizeof *word; i++) {
-        if (strcmp(text, word[i]) == 0) {
+    static const char *const spelling[] = {"0", "1", "false", "true", "no", "yes", "off", "on"};
+    for (size_t i = 0; i < sizeof spelling / sizeof *spelling; i++) {
+        if (strcmp(text, spelling[i]) == 0) {
             *flag = i % 2 == 1;
             return NULL;
         }

@@ -1,0 +1,274 @@
+/* From the lines of files to options: which sections, their parents, what isn't ours. */
+#include <isoslice/config.h>
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "config/ini.h"
+#include "config/value.h"
+
+enum {
+    DEPTH_MAX = 32, /* of parents' parents; deeper is a circle */
+    NAME_SIZE = 256
+};
+
+typedef struct reader {
+    iso_options *options;
+    iso_config_notes *notes;
+    const char *path;
+    iso_ini ini;
+} reader;
+
+/* ---- notes ---- */
+
+/* Add to a comma-separated list, unless it's there. */
+static void note(char *list, size_t size, int32_t *count, const char *entry) {
+    size_t length = strlen(list), added = strlen(entry);
+    for (const char *at = list; (at = strstr(at, entry)); at++) {
+        bool begins = at == list || at[-1] == ' ';
+        bool ends = at[added] == 0 || at[added] == ',';
+        if (begins && ends)
+            return;
+    }
+    ++*count;
+    if (length + added + 3 <= size)
+        snprintf(list + length, size - length, "%s%s", length > 0 ? ", " : "", entry);
+}
+
+static void note_unknown(iso_config_notes *notes, const char *key) {
+    char entry[64];
+    snprintf(entry, sizeof entry, "%.60s", key);
+    note(notes->unknown, sizeof notes->unknown, &notes->unknown_count, entry);
+}
+
+static void note_unused(iso_config_notes *notes, const char *key, const char *value) {
+    char entry[128];
+    snprintf(entry, sizeof entry, "%.48s = %.60s", key, value);
+    note(notes->unused, sizeof notes->unused, &notes->unused_count, entry);
+}
+
+/* ---- lines ---- */
+
+static bool is_numeric(iso_option_kind kind) {
+    return kind == ISO_VALUE_BOOL || kind == ISO_VALUE_INTEGER || kind == ISO_VALUE_NUMBER ||
+           kind == ISO_VALUE_PERCENT || kind == ISO_VALUE_RELATIVE;
+}
+
+static bool has_word(int32_t option, const char *value) {
+    for (int32_t i = 0; iso_option_word(option, i); i++)
+        if (strcmp(iso_option_word(option, i), value) == 0)
+            return true;
+    return false;
+}
+
+static iso_status apply_line(reader *from, const iso_ini_line *line) {
+    int32_t option = iso_option_find(line->key);
+    if (option < 0) {
+        if (strcmp(line->key, "inherits") != 0 && strcmp(line->key, "prusaslicer_config") != 0)
+            note_unknown(from->notes, line->key);
+        return ISO_OK;
+    }
+    if (iso_option_word(option, 0) && !has_word(option, line->value)) {
+        note_unused(from->notes, line->key, line->value);
+        return ISO_OK;
+    }
+    char where[NAME_SIZE + 16], first[64];
+    snprintf(where, sizeof where, line->number > 0 ? "%.255s:%d" : "%.255s", from->path,
+             line->number);
+    const char *value = line->value;
+    size_t length = strcspn(value, ",");
+    if (is_numeric(iso_option_at(option)->kind) && value[length] == ',' && length < sizeof first) {
+        snprintf(first, sizeof first, "%.*s", (int)length, value);
+        value = first;
+    }
+    return iso_options_set(from->options, line->key, value, where);
+}
+
+/* ---- sections ---- */
+
+static iso_status apply_section(reader *from, int32_t section, int depth);
+
+/* `inherits = *common*; *fine*`: names of sections of the same type */
+static iso_status apply_parents(reader *from, const char *child, const iso_ini_line *line,
+                                int depth) {
+    int type = (int)strcspn(child, ":");
+    const char *at = line->value;
+    while (*at) {
+        at += strspn(at, "; \"");
+        size_t length = strcspn(at, ";\"");
+        while (length > 0 && at[length - 1] == ' ')
+            length--;
+        if (length == 0)
+            break;
+        char name[NAME_SIZE];
+        snprintf(name, sizeof name, "%.*s:%.*s", type, child, (int)length, at);
+        int32_t parent = iso_ini_find(&from->ini, name);
+        if (parent >= 0)
+            ISO_TRY(apply_section(from, parent, depth + 1));
+        else
+            note_unused(from->notes, line->key, name);
+        at += length;
+    }
+    return ISO_OK;
+}
+
+static iso_status apply_section(reader *from, int32_t index, int depth) {
+    const iso_ini_section *section = &from->ini.section[index];
+    if (depth > DEPTH_MAX)
+        return iso_fail(ISO_BAD_CONFIG, "%s: [%s] inherits from itself", from->path, section->name);
+    const iso_ini_line *line = from->ini.line + section->first;
+    for (int32_t i = 0; i < section->count && *section->name; i++)
+        if (strcmp(line[i].key, "inherits") == 0)
+            ISO_TRY(apply_parents(from, section->name, &line[i], depth));
+    for (int32_t i = 0; i < section->count; i++)
+        ISO_TRY(apply_line(from, &line[i]));
+    return ISO_OK;
+}
+
+/* Sections that may be chosen, as a hint: not the abstract ones. */
+static iso_status fail_choice(const reader *from, const char *missing) {
+    char names[512] = "";
+    size_t length = 0;
+    for (int32_t i = 1; i < from->ini.section_count && length < 400; i++) {
+        const char *name = from->ini.section[i].name;
+        if (strchr(name, ':') && !strchr(name, '*') && strlen(name) < 80)
+            length += (size_t)snprintf(names + length, sizeof names - length, "%s%s",
+                                       length > 0 ? ", " : "", name);
+    }
+    if (missing)
+        return iso_fail(ISO_BAD_CONFIG, "%s: has no section [%s]; it has %s", from->path, missing,
+                        names);
+    return iso_fail(ISO_BAD_CONFIG,
+                    "%s: is a bundle; say which sections to take, as -c '%s:print:NAME'; it has %s",
+                    from->path, from->path, names);
+}
+
+static iso_status apply_named(reader *from, const char *type, const char *name, size_t length) {
+    char section[NAME_SIZE];
+    snprintf(section, sizeof section, "%s:%.*s", type, (int)length, name);
+    int32_t index = iso_ini_find(&from->ini, section);
+    return index < 0 ? fail_choice(from, section) : apply_section(from, index, 0);
+}
+
+static const char *const section_type[] = {"printer", "filament", "print"};
+enum { TYPE_COUNT = sizeof section_type / sizeof *section_type };
+
+/* The sections that [presets] of a bundle names, a missing one being a preset of the system. */
+static iso_status apply_presets(reader *from, int32_t presets) {
+    const iso_ini_section *section = &from->ini.section[presets];
+    int32_t applied = 0;
+    for (int t = 0; t < TYPE_COUNT; t++) {
+        for (int32_t i = section->first; i < section->first + section->count; i++) {
+            const iso_ini_line *line = &from->ini.line[i];
+            char name[NAME_SIZE];
+            snprintf(name, sizeof name, "%s:%s", section_type[t], line->value);
+            int32_t chosen = iso_ini_find(&from->ini, name);
+            if (strcmp(line->key, section_type[t]) != 0 || chosen < 0)
+                continue;
+            ISO_TRY(apply_section(from, chosen, 0));
+            applied++;
+        }
+    }
+    return applied > 0 ? ISO_OK : fail_choice(from, NULL);
+}
+
+/* The first of ":printer:", ":filament:", ":print:" in the text; NULL if there is none. */
+static const char *find_choice(const char *text, const char **type) {
+    const char *found = NULL;
+    for (int t = 0; t < TYPE_COUNT; t++) {
+        char mark[16];
+        snprintf(mark, sizeof mark, ":%s:", section_type[t]);
+        const char *at = strstr(text, mark);
+        if (at && (!found || at < found)) {
+            found = at;
+            *type = section_type[t];
+        }
+    }
+    return found;
+}
+
+static iso_status apply_choices(reader *from, const char *choice) {
+    const char *type = NULL;
+    ISO_TRY(apply_section(from, 0, 0));
+    while (choice && (choice = find_choice(choice, &type))) {
+        const char *name = choice + strlen(type) + 2, *ignored;
+        const char *next = find_choice(name, &ignored);
+        ISO_TRY(apply_named(from, type, name, next ? (size_t)(next - name) : strlen(name)));
+        choice = next;
+    }
+    return ISO_OK;
+}
+
+static iso_status apply_file(reader *from, const char *choice) {
+    int32_t presets = iso_ini_find(&from->ini, "presets");
+    if (choice || from->ini.section_count == 1)
+        return apply_choices(from, choice);
+    return presets >= 0 ? apply_presets(from, presets) : fail_choice(from, NULL);
+}
+
+iso_status iso_options_read(iso_options *options, const char *path, iso_config_notes *notes) {
+    char file[4096];
+    const char *type, *choice = access(path, F_OK) == 0 ? NULL : find_choice(path, &type);
+    size_t length = choice ? (size_t)(choice - path) : strlen(path);
+    if (length >= sizeof file)
+        return iso_fail(ISO_UNREADABLE, "%.60s...: the name is too long", path);
+    memcpy(file, path, length);
+    file[length] = 0;
+    iso_options changed = *options;
+    reader from = {&changed, notes, file, {0}};
+    ISO_TRY(iso_ini_read(&from.ini, file));
+    iso_status status = apply_file(&from, choice);
+    if (status == ISO_OK)
+        *options = changed;
+    iso_ini_free(&from.ini);
+    return status;
+}
+
+/* ---- placeholders ---- */
+
+/* [key], {key} and {key[0]}: there is one extruder. */
+static int32_t find_placeholder(const char *text, size_t length) {
+    char key[64];
+    if (length >= sizeof key)
+        return -1;
+    memcpy(key, text, length);
+    key[length] = 0;
+    char *index = strchr(key, '[');
+    if (index && (strcmp(index, "[0]") == 0 || strcmp(index, "[initial_extruder]") == 0))
+        *index = 0;
+    return iso_option_find(key);
+}
+
+iso_status iso_options_expand(char *out, size_t size, const char *text,
+                              const iso_options *options) {
+    size_t length = 0;
+    while (*text) {
+        char single[2] = {*text, 0}, value[ISO_VALUE_TEXT_SIZE];
+        const char *piece = single;
+        if (*text == '[' || *text == '{') {
+            size_t key = strcspn(text + 1, *text == '[' ? "]\n" : "}\n");
+            int32_t option = find_placeholder(text + 1, key);
+            if (option < 0 || text[key + 1] != (*text == '[' ? ']' : '}'))
+                return iso_fail(ISO_BAD_CONFIG,
+                                "the G-code has a placeholder %.*s that names no option; take it "
+                                "out or write what it stands for",
+                                key > 60 ? 60 : (int)key + 2, text);
+            iso_options_format(value, sizeof value, options, option);
+            piece = value;
+            text += key + 1;
+        }
+        size_t added = strlen(piece);
+        if (length + added >= size)
+            return iso_fail(ISO_BAD_CONFIG,
+                            "the G-code is longer than %zu bytes with its "
+                            "placeholders filled in",
+                            size - 1);
+        memcpy(out + length, piece, added + 1);
+        length += added;
+        text += *text != 0;
+    }
+    if (length == 0 && size > 0)
+        out[0] = 0;
+    return ISO_OK;
+}
