@@ -42,6 +42,7 @@ typedef struct iso_gcode_options {
     double junction_deviation;
     double max_speed_z;
 
+    int remaining_times;                               /* M73 P R: progress and minutes left */
     const char *start_gcode, *end_gcode, *layer_gcode; /* layer_gcode after each change of layer */
     const char *generator;                             /* "isoslice 0.1.0" */
     int64_t timestamp; /* seconds since 1970, UTC, of the first line */

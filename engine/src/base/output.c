@@ -161,6 +161,20 @@ int64_t iso_output_size(const iso_output *output) {
     return output->size;
 }
 
+iso_status iso_output_patch(iso_output *output, int64_t offset, const void *bytes, size_t size) {
+    if (offset < 0 || offset + (int64_t)size > output->size)
+        return output->status = iso_fail(ISO_BUG, "a patch beyond the end of the output");
+    int64_t flushed = output->size - (int64_t)output->buffered;
+    if (offset >= flushed) {
+        memcpy(output->buffer + (offset - flushed), bytes, size);
+        return output->status;
+    }
+    ISO_TRY(flush(output));
+    if (pwrite(output->descriptor, bytes, size, (off_t)offset) != (ssize_t)size)
+        output->status = not_written(output_name(output));
+    return output->status;
+}
+
 static iso_status copy_to_target(iso_output *output) {
     if (lseek(output->descriptor, 0, SEEK_SET) < 0)
         return not_written(output_name(output));

@@ -20,6 +20,9 @@ iso_status iso_output_write(iso_output *output, const void *bytes, size_t size);
 iso_status iso_output_print(iso_output *output, const char *format, ...) ISO_PRINTF(2, 3);
 int64_t iso_output_size(const iso_output *output);
 
+/* Replace `size` bytes written earlier, from byte `offset` on. A failure is kept, as above. */
+iso_status iso_output_patch(iso_output *output, int64_t offset, const void *bytes, size_t size);
+
 /* Put the file in its place, or fail and leave whatever was there before. Frees the output either
  * way. */
 iso_status iso_output_commit(iso_output *output) ISO_MUST_CHECK;

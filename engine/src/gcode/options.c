@@ -42,6 +42,7 @@ iso_gcode_options iso_gcode_defaults(void) {
         .retract_acceleration = 1000,
         .junction_deviation = 0.013,
         .max_speed_z = 12,
+        .remaining_times = 1,
         .start_gcode = "G28 ; home all axes\nG1 Z5 F5000 ; lift nozzle\n",
         .end_gcode = "M104 S0 ; turn off temperature\nM140 S0 ; turn off bed\n"
                      "G28 X0 ; home X axis\nM84 ; disable motors\n",

@@ -90,6 +90,13 @@ void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
     planner->z = z;
 }
 
+double iso_planner_elapsed(const iso_planner *planner) {
+    double time = planner->time;
+    for (int32_t i = 0; i < planner->count; i++)
+        time += planner->block[i].length / planner->block[i].speed;
+    return time;
+}
+
 void iso_planner_stop(iso_planner *planner) {
     plan_backwards(planner);
     let_go(planner, planner->count);

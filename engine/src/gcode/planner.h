@@ -40,6 +40,9 @@ typedef struct iso_planner_move {
 void iso_planner_start(iso_planner *planner, double junction_deviation);
 void iso_planner_add(iso_planner *planner, const iso_planner_move *move);
 
+/* About the time of all moves so far; those in the window at their full speed. */
+double iso_planner_elapsed(const iso_planner *planner);
+
 /* The machine stands still here. */
 void iso_planner_stop(iso_planner *planner);
 

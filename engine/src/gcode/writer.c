@@ -8,6 +8,7 @@
 #include "gcode/flavour.h"
 #include "gcode/number.h"
 #include "gcode/planner.h"
+#include "gcode/progress.h"
 #include "gcode/text.h"
 
 static const double pi = 3.14159265358979323846;
@@ -46,6 +47,7 @@ struct iso_gcode_writer {
 
     iso_gcode_totals totals;
     iso_planner planner;
+    iso_progress progress;
     double *length; /* [length_capacity] units: of each segment of the layer */
     int64_t length_capacity;
     size_t used;
@@ -251,13 +253,26 @@ static void draw(iso_gcode_writer *w, const iso_path_vertex *from, iso_point to,
     w->z = z;
 }
 
-static void draw_path(iso_gcode_writer *w, const iso_paths *paths, const iso_path *path,
-                      const iso_layer_pace *pace) {
+/* A line to be filled in when the whole time is known. */
+static iso_status mark_progress(iso_gcode_writer *w) {
+    if (!w->options.remaining_times || !w->words->progress)
+        return ISO_OK;
+    char *p = reserve(w);
+    int64_t offset = iso_output_size(w->output) + (int64_t)w->used;
+    ISO_TRY(iso_progress_mark(&w->progress, offset, iso_planner_elapsed(&w->planner)));
+    accept(w, iso_progress_put_line(p, 0, 0));
+    return ISO_OK;
+}
+
+static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const iso_path *path,
+                            const iso_layer_pace *pace) {
     const iso_path_vertex *vertex = paths->vertex + path->first;
     const double *length = w->length + path->first;
     int32_t segments = path->closed ? path->count : path->count - 1;
     if (path->count < 2)
-        return;
+        return ISO_OK;
+    if (w->planner.time > w->progress.next_time)
+        ISO_TRY(mark_progress(w));
     int bridge = path->role == ISO_ROLE_BRIDGE_INFILL || path->role == ISO_ROLE_OVERHANG_PERIMETER;
     set_fan(w, bridge ? pace->bridge_fan : pace->fan);
     travel(w, vertex[0].at, w->layer_z + vertex[0].z);
@@ -272,6 +287,7 @@ static void draw_path(iso_gcode_writer *w, const iso_paths *paths, const iso_pat
         const iso_path_vertex *to = &vertex[i + 1 < path->count ? i + 1 : 0];
         draw(w, &vertex[i], to->at, w->layer_z + to->z, length[i], feed);
     }
+    return ISO_OK;
 }
 
 static double length_between(const iso_path_vertex *a, const iso_path_vertex *b) {
@@ -356,10 +372,11 @@ iso_status iso_gcode_layer(iso_gcode_writer *w, const iso_gcode_layer_info *laye
     iso_cooling_pace(&pace, &work, &w->options, layer->index);
     begin_layer(w, layer);
     ISO_TRY(put_user_text(w, w->options.layer_gcode));
+    ISO_TRY(mark_progress(w));
     if (w->totals.layers++ == 1)
         change_temperatures(w);
     for (int32_t i = 0; i < layer->paths->count; i++)
-        draw_path(w, layer->paths, &layer->paths->path[i], &pace);
+        ISO_TRY(draw_path(w, layer->paths, &layer->paths->path[i], &pace));
     return iso_output_write(w->output, "", 0);
 }
 
@@ -391,6 +408,7 @@ iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
     w->x = w->y = w->z = w->feed = w->role = w->width = UNKNOWN;
     w->fan = -1;
     iso_planner_start(&w->planner, options->junction_deviation);
+    w->progress = (iso_progress){0};
     w->length = NULL;
     w->length_capacity = 0;
     w->used = 0;
@@ -401,6 +419,7 @@ iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
 void iso_gcode_writer_free(iso_gcode_writer *w) {
     if (!w)
         return;
+    iso_progress_free(&w->progress);
     iso_release(w->length);
     iso_release(w);
 }
@@ -421,6 +440,7 @@ iso_status iso_gcode_begin(iso_gcode_writer *w) {
         say(w, w->words->bed_wait, o->first_layer_bed_temperature);
     if (nozzle)
         say(w, w->words->nozzle, o->first_layer_temperature);
+    ISO_TRY(mark_progress(w));
     accept(w, PUT(reserve(w), ";TYPE:Custom\n"));
     ISO_TRY(put_user_text(w, start));
     if (nozzle)
@@ -459,6 +479,8 @@ iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *w,
     sum_up(&sum, w);
     accept(w, PUT(reserve(w), ";TYPE:Custom\n"));
     ISO_TRY(put_user_text(w, w->options.end_gcode));
+    if (w->options.remaining_times && w->words->progress)
+        accept(w, iso_progress_put_line(reserve(w), 100, 0));
     put_figure(w, "filament used [mm]", sum.filament_mm);
     put_figure(w, "filament used [cm3]", sum.filament_cm3);
     put_figure(w, "filament used [g]", sum.filament_g);
@@ -473,6 +495,7 @@ iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *w,
         ISO_TRY(config(w->output, payload));
         ISO_TRY(iso_output_print(w->output, "; prusaslicer_config = end\n"));
     }
+    ISO_TRY(iso_progress_fill_in(w->output, &w->progress, sum.time));
     sum.bytes = iso_output_size(w->output);
     *totals = sum;
     return ISO_OK;
