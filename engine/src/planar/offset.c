@@ -1,16 +1,15 @@
 /* Offsets by a raw contour and winding numbers.
  *
- * Let the raw contour go from each edge's shifted copy to the next: around opening corners by a
- * join, at closing corners back through the original vertex. It is then the contour plus, for every
- * edge, the outline of the rectangle between the edge and its copy, and for every opening corner
- * that of its sector. So the winding of a point is the region's own plus (growing) or less
- * (shrinking) the number of rectangles and sectors around it, and winding >= 1 is the offset,
- * exactly.
+ * The raw contour is the convolution of the region's boundary with a circle: each edge's shifted copy, joined
+ * around opening corners, and across closing corners by the chord between the two copies' ends, in place of
+ * the arc run backwards. When growing, its winding about q is the Euler characteristic of what the region
+ * shares with the disc around q, or more: 0 outside the offset; the number of pieces inside it, at least 1,
+ * unless a whole hole fits in the disc. Such holes vanish anyway and are left out beforehand; the same goes, in the
+ * complement, for islands when shrinking. So winding >= 1 is the offset, exactly. (Going back through the original
+ * vertex at closing corners needs no such proviso, but a fillet of n short edges then costs n^2 crossings.)
  *
- * A closing corner whose two copies meet within half of both edges is cut at once: the ear cut away
- * lies in both rectangles, so every point loses one of two or more. (Half, so that the ears of an
- * edge stay apart: on a ring of cut edges that all invert the count would come out one too high.)
- */
+ * A closing corner whose two copies meet within half of both edges is cut there at once: that is the convolution
+ * of the region with the corner filled up to the circle that touches both edges, which grows to the same. */
 #include <math.h>
 
 #include <isoslice/planar.h>
@@ -126,7 +125,6 @@ static iso_status put_corner(iso_rawing *r, iso_point corner, const iso_side *in
         return put(r, corner, sum, r->distance / (1 + cosine));
     }
     ISO_TRY(put(r, corner, in->shift, r->distance));
-    ISO_TRY(put(r, corner, in->shift, 0));
     return put(r, corner, out->shift, r->distance);
 }
 
@@ -140,9 +138,11 @@ static iso_status put_contour(iso_rawing *r, const iso_point *point, int32_t cou
     return ISO_OK;
 }
 
-/* A shrunk outer contour that fits in a band of twice the distance is gone: don't even draw it. */
+/* An outer contour that shrinks, or a hole that is grown over, is gone if it fits in a band of twice the
+ * distance, and so if it fits in a disc. */
 static bool vanishes(const iso_point *point, int32_t count, double sign, double distance) {
-    if (sign > 0 || contour_double_area(point, count) < 0)
+    bool outer = contour_double_area(point, count) > 0;
+    if (outer == (sign > 0))
         return false;
     iso_point min = point[0], max = point[0];
     for (int32_t i = 1; i < count; i++) {
