@@ -15,7 +15,6 @@ void iso_progress_free(iso_progress *progress) {
 iso_status iso_progress_mark(iso_progress *progress, int64_t offset, double time) {
     ISO_TRY(ISO_GROW(progress->point, progress->capacity, progress->count + 1));
     progress->point[progress->count++] = (iso_progress_point){offset, time};
-    progress->next_time = time + ISO_PROGRESS_INTERVAL;
     return ISO_OK;
 }
 

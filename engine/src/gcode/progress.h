@@ -19,7 +19,6 @@ typedef struct iso_progress_point {
 typedef struct iso_progress {
     int64_t count, capacity;
     iso_progress_point *point;
-    double next_time;
 } iso_progress;
 
 void iso_progress_free(iso_progress *progress);

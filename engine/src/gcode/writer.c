@@ -48,7 +48,8 @@ struct iso_gcode_writer {
     iso_gcode_totals totals;
     iso_planner planner;
     iso_progress progress;
-    double *length; /* [length_capacity] units: of each segment of the layer */
+    double clock, next_mark; /* s at full speed, since the window of the planner lags behind */
+    double *length;          /* [length_capacity] units: of each segment of the layer */
     int64_t length_capacity;
     size_t used;
     char buffer[BUFFER_SIZE];
@@ -261,6 +262,7 @@ static iso_status mark_progress(iso_gcode_writer *w) {
     int64_t offset = iso_output_size(w->output) + (int64_t)w->used;
     ISO_TRY(iso_progress_mark(&w->progress, offset, iso_planner_elapsed(&w->planner)));
     accept(w, iso_progress_put_line(p, 0, 0));
+    w->next_mark = w->clock + ISO_PROGRESS_INTERVAL;
     return ISO_OK;
 }
 
@@ -271,7 +273,7 @@ static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const i
     int32_t segments = path->closed ? path->count : path->count - 1;
     if (path->count < 2)
         return ISO_OK;
-    if (w->planner.time > w->progress.next_time)
+    if (w->clock > w->next_mark)
         ISO_TRY(mark_progress(w));
     int bridge = path->role == ISO_ROLE_BRIDGE_INFILL || path->role == ISO_ROLE_OVERHANG_PERIMETER;
     set_fan(w, bridge ? pace->bridge_fan : pace->fan);
@@ -283,10 +285,12 @@ static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const i
         w->role = path->role;
     }
     int32_t feed = pace->feed[iso_speed_slot(path->role, path->speed_class)];
+    double drawn_before = w->totals.bead_mm;
     for (int32_t i = 0; i < segments; i++) {
         const iso_path_vertex *to = &vertex[i + 1 < path->count ? i + 1 : 0];
         draw(w, &vertex[i], to->at, w->layer_z + to->z, length[i], feed);
     }
+    w->clock += (w->totals.bead_mm - drawn_before) * 60 / feed;
     return ISO_OK;
 }
 
@@ -409,6 +413,7 @@ iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
     w->fan = -1;
     iso_planner_start(&w->planner, options->junction_deviation);
     w->progress = (iso_progress){0};
+    w->clock = w->next_mark = 0;
     w->length = NULL;
     w->length_capacity = 0;
     w->used = 0;
