@@ -29,10 +29,11 @@ static iso_status check_levels(const slicer *s) {
 }
 
 static iso_status check_heights(const slicer *s) {
-    for (int32_t a = 0; a < s->surface->link.size; a++) {
-        int32_t b = iso_double_link_beta(s->surface, a);
+    for (int32_t a = 0; a < s->surface->link.size; a++)
         if (!isfinite(s->height[a]))
             return iso_fail(ISO_USAGE, "the height of dart %d is not finite", a);
+    for (int32_t a = 0; a < s->surface->link.size; a++) {
+        int32_t b = iso_double_link_beta(s->surface, a);
         if (s->height[a] != s->height[b])
             return iso_fail(ISO_USAGE, "hβ = h fails at dart %d: %.17g and %.17g around one vertex",
                             a, s->height[b], s->height[a]);
