@@ -30,7 +30,7 @@ typedef struct iso_fill_options {
 /* Line spacing below this (10 um) is refused. */
 #define ISO_FILL_SPACING_MIN 100
 
-/* Lines bead.spacing / density apart, angle 0; fitted if density is 1; links up to 3 spacings,
+/* Lines bead.spacing / density apart, angle 0; fitted if density is 1; links up to 5 spacings,
  * deviation 100 (10 um), shortest half a bead; role solid infill at density 1, else internal. */
 ISO_API iso_fill_options iso_fill_defaults(iso_bead bead, double density);
 

@@ -42,10 +42,11 @@ static int64_t count_crossings(int32_t *begin, int32_t *level, const iso_fill_pa
         for (int32_t i = from; i < to; i++)
             level[i] = level_of(sweep, per_step, iso_sweep_v(sweep, region->point[i]));
         for (int32_t i = from, last = to - 1; i < to; last = i++) {
-            int32_t low = level[last] < level[i] ? level[last] : level[i];
-            int32_t high = level[last] < level[i] ? level[i] : level[last];
-            begin[low]++;
-            begin[high]--;
+            int32_t a = level[last], b = level[i];
+            if (a != b) { /* most edges of a fine contour cross no line */
+                begin[a < b ? a : b]++;
+                begin[a < b ? b : a]--;
+            }
         }
     }
     int64_t total = 0, here = 0;

@@ -4,7 +4,7 @@
 
 #include "fill/hatch.h"
 
-enum { SPACING_FRACTION = 256, LINK_SPACINGS = 3, DEVIATION = 100 };
+enum { SPACING_FRACTION = 256, LINK_SPACINGS = 5, DEVIATION = 100 };
 
 iso_fill_options iso_fill_defaults(iso_bead bead, double density) {
     int solid = density >= 1;
@@ -166,6 +166,8 @@ static iso_status fill_part(iso_paths *out, const iso_fill_part *part, iso_sweep
     int64_t low, high;
     double share = 1;
     iso_hatch_extent(&low, &high, part, &sweep);
+    if (low >= high)
+        return ISO_OK;
     if (options->fit) {
         iso_sweep_fit(&sweep, spacing, low, high);
         share = fitted_share(&sweep, spacing, low, high);
@@ -243,6 +245,10 @@ static iso_status check_options(const iso_fill_options *options) {
         return iso_fail(ISO_USAGE, "fill: a spacing of %g mm is out of range (%g to %g mm)",
                         options->spacing / ISO_UNITS_PER_MM, iso_mm(ISO_FILL_SPACING_MIN),
                         iso_mm(4 * ISO_COORDINATE_MAX));
+    if (options->width < 0 || options->width > ISO_COORDINATE_MAX || options->area < 0 ||
+        options->area > 1 << 30)
+        return iso_fail(ISO_USAGE, "fill: a bead %d units wide with an area of %d is out of range",
+                        options->width, options->area);
     if (!(fabs(options->angle) <= 1e6))
         return iso_fail(ISO_USAGE, "fill: an angle of %g degrees is out of range", options->angle);
     if (!(fabs(options->phase) <= 4.0 * ISO_COORDINATE_MAX))

@@ -61,9 +61,7 @@ void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high)
     int64_t inset = 2 * ISO_SWEEP_ONE, extent = high - low;
     int64_t gaps = (extent + spacing / 2) / spacing;
     sweep->count = (int32_t)gaps + 1;
-    if (high <= low) {
-        sweep->count = 0;
-    } else if (gaps == 0) {
+    if (gaps == 0) {
         sweep->first = (low + extent / 2) | 1;
         sweep->step = spacing;
     } else {

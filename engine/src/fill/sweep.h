@@ -29,8 +29,8 @@ static inline int64_t iso_sweep_v(const iso_sweep *sweep, iso_point p) {
 /* Lines every `spacing` from `phase` on, those strictly between v = low and v = high. */
 void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, int64_t low, int64_t high);
 
-/* Lines about `spacing` apart, the first and the last on the edges; one in the middle if they are
- * too near. */
+/* Low < high. Lines about `spacing` apart, the first and the last on the edges; one in the middle
+ * if they are too near. */
 void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high);
 
 #endif
