@@ -8,15 +8,27 @@
     TENS(ROW, 0), TENS(ROW, 1), TENS(ROW, 2), TENS(ROW, 3), TENS(ROW, 4), TENS(ROW, 5),            \
         TENS(ROW, 6), TENS(ROW, 7), TENS(ROW, 8), TENS(ROW, 9)
 
-#define TEXT(a, b, c)                                                                              \
-    { '.', '0' + a, '0' + b, '0' + c }
-#define TEXTS(a, b)                                                                                \
-    TEXT(a, b, 0), TEXT(a, b, 1), TEXT(a, b, 2), TEXT(a, b, 3), TEXT(a, b, 4), TEXT(a, b, 5),      \
-        TEXT(a, b, 6), TEXT(a, b, 7), TEXT(a, b, 8), TEXT(a, b, 9)
-#define SIZES(a, b) b ? 3 : a ? 2 : 0, 4, 4, 4, 4, 4, 4, 4, 4, 4
+#define FRACTION(a, b, c)                                                                          \
+    { {'0' + a, '0' + b, '0' + c}, c ? 4 : b ? 3 : a ? 2 : 0 }
+#define WHOLE(a, b, c)                                                                             \
+    {                                                                                              \
+        {a   ? '0' + a                                                                             \
+         : b ? '0' + b                                                                             \
+             : '0' + c,                                                                            \
+         a ? '0' + b : '0' + c, '0' + c},                                                          \
+            a   ? 3                                                                                \
+            : b ? 2                                                                                \
+            : c ? 1                                                                                \
+                : 0                                                                                \
+    }
+#define TEN(ONE, a, b)                                                                             \
+    ONE(a, b, 0), ONE(a, b, 1), ONE(a, b, 2), ONE(a, b, 3), ONE(a, b, 4), ONE(a, b, 5),            \
+        ONE(a, b, 6), ONE(a, b, 7), ONE(a, b, 8), ONE(a, b, 9)
+#define FRACTIONS(a, b) TEN(FRACTION, a, b)
+#define WHOLES(a, b) TEN(WHOLE, a, b)
 
-const char iso_number_fraction[1000][4] = {HUNDREDS(TEXTS)};
-const uint8_t iso_number_fraction_size[1000] = {HUNDREDS(SIZES)};
+const iso_three_digits iso_number_fraction[1000] = {HUNDREDS(FRACTIONS)};
+const iso_three_digits iso_number_whole[1000] = {HUNDREDS(WHOLES)};
 
 char *iso_put_integer(char *to, int64_t value) {
     char digit[20];

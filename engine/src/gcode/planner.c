@@ -14,15 +14,13 @@ void iso_planner_start(iso_planner *planner, double junction_deviation) {
     planner->count = 0;
 }
 
-/* Seconds for a block entered and left at the given speeds. */
-static double time_of(const iso_planner_block *b, double in, double out, double out_squared) {
-    double acceleration = b->gain / (2 * b->length);
-    double peak_squared = (b->gain + in * in + out_squared) / 2;
-    if (peak_squared <= b->speed * b->speed)
-        return (2 * sqrt(peak_squared) - in - out) / acceleration;
-    double ramps = 2 * b->speed * b->speed - in * in - out_squared;
-    return (2 * b->speed - in - out) / acceleration +
-           (b->length - ramps / (2 * acceleration)) / b->speed;
+/* Seconds for a block entered and left at the given speeds. With a the acceleration, v the speed
+ * and L the length, ramps and cruise add up to ((v - in)^2 + (v - out)^2 + 2 a L) / (2 a v). */
+static double time_of(const iso_planner_block *b, double in, double out) {
+    double peak_squared = (b->gain + in * in + out * out) / 2, v = b->speed;
+    if (peak_squared <= v * v)
+        return (2 * sqrt(peak_squared) - in - out) / b->acceleration;
+    return ((v - in) * (v - in) + (v - out) * (v - out) + b->gain) / (2 * b->acceleration * v);
 }
 
 /* Entry speeds from which the machine can still brake, were it to stop behind the last block. */
@@ -40,9 +38,8 @@ static void let_go(iso_planner *planner, int32_t count) {
     for (int32_t i = 0; i < count; i++) {
         const iso_planner_block *b = &planner->block[i];
         double next = i + 1 < planner->count ? b[1].entry : 0;
-        double out_squared = smaller(next, in * in + b->gain);
-        double out = sqrt(out_squared);
-        double t = time_of(b, in, out, out_squared);
+        double out = sqrt(smaller(next, in * in + b->gain));
+        double t = time_of(b, in, out);
         planner->time += t;
         if (!b->extrudes)
             planner->idle_time += t;
@@ -54,17 +51,17 @@ static void let_go(iso_planner *planner, int32_t count) {
             (size_t)planner->count * sizeof planner->block[0]);
 }
 
-/* Square of the speed at which the corner's arc of the given deviation can be taken. */
+/* Square of the speed at which the corner's arc of the given deviation can be taken, but at most
+ * `most`, which gentle corners reach without a division. */
 static double junction_squared(const iso_planner *planner, double x, double y, double z,
-                               double acceleration) {
+                               double acceleration, double most) {
     double cosine = -(planner->x * x + planner->y * y + planner->z * z);
     int moved = planner->x != 0 || planner->y != 0 || planner->z != 0;
     if (!moved || cosine > 0.999999 || (x == 0 && y == 0 && z == 0))
         return 0;
-    if (cosine < -0.999999)
-        return 1e30;
-    double sine = sqrt(0.5 * (1 - cosine));
-    return acceleration * planner->junction_deviation * sine / (1 - sine);
+    double sine = cosine < -1 ? 1 : sqrt(0.5 * (1 - cosine));
+    double reached = acceleration * planner->junction_deviation * sine;
+    return reached >= most * (1 - sine) ? most : reached / (1 - sine);
 }
 
 void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
@@ -72,19 +69,18 @@ void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
         return;
     if (planner->count == ISO_PLANNER_WINDOW) {
         plan_backwards(planner);
-        let_go(planner, ISO_PLANNER_WINDOW / 2);
+        let_go(planner, ISO_PLANNER_WINDOW - ISO_PLANNER_AHEAD);
     }
     double inverse = 1 / move->length;
     double x = move->dx * inverse, y = move->dy * inverse, z = move->dz * inverse;
-    double entry = junction_squared(planner, x, y, z, move->acceleration);
     double before = planner->count > 0 ? planner->block[planner->count - 1].speed : 0;
-    entry = smaller(entry, smaller(before * before, move->speed * move->speed));
-    planner->block[planner->count++] =
-        (iso_planner_block){.length = move->length,
-                            .speed = move->speed,
-                            .gain = 2 * move->acceleration * move->length,
-                            .limit = entry,
-                            .extrudes = move->extrudes};
+    double slower = smaller(before, move->speed);
+    planner->block[planner->count++] = (iso_planner_block){
+        .speed = move->speed,
+        .acceleration = move->acceleration,
+        .gain = 2 * move->acceleration * move->length,
+        .limit = junction_squared(planner, x, y, z, move->acceleration, slower * slower),
+        .extrudes = move->extrudes};
     planner->x = x;
     planner->y = y;
     planner->z = z;
@@ -92,8 +88,8 @@ void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
 
 double iso_planner_elapsed(const iso_planner *planner) {
     double time = planner->time;
-    for (int32_t i = 0; i < planner->count; i++)
-        time += planner->block[i].length / planner->block[i].speed;
+    for (const iso_planner_block *b = planner->block; b < planner->block + planner->count; b++)
+        time += b->gain / (2 * b->acceleration * b->speed);
     return time;
 }
 

@@ -38,6 +38,7 @@ struct iso_gcode_writer {
     int32_t z;       /* units */
     int32_t layer_z; /* units */
     int32_t feed;    /* mm/min */
+    double speed;    /* mm/s: the same */
     int64_t e;       /* last digits of E since it was reset */
     int retracted, fan;
     int32_t role, width; /* last said in comments */
@@ -98,6 +99,7 @@ static char *put_feed(iso_gcode_writer *w, char *p, int32_t feed) {
     if (feed == w->feed)
         return p;
     w->feed = feed;
+    w->speed = feed / 60.0;
     p = PUT(p, " F");
     return iso_put_integer(p, feed);
 }
@@ -112,7 +114,7 @@ static char *put_e(iso_gcode_writer *w, char *p, int64_t delta) {
 static void plan(iso_gcode_writer *w, double dx, double dy, double dz, int extrudes) {
     iso_planner_move move = {.dx = dx, .dy = dy, .dz = dz, .extrudes = extrudes};
     move.length = sqrt(dx * dx + dy * dy + dz * dz);
-    move.speed = w->feed / 60.0;
+    move.speed = w->speed;
     move.acceleration = extrudes ? w->options.acceleration : w->options.travel_acceleration;
     double z_speed = w->options.max_speed_z;
     double rise = dz < 0 ? -dz : dz;
@@ -125,7 +127,7 @@ static void plan(iso_gcode_writer *w, double dx, double dy, double dz, int extru
 
 static void plan_filament(iso_gcode_writer *w, int64_t e) {
     iso_planner_move move = {.length = (double)(e < 0 ? -e : e) / E_DECIMALS,
-                             .speed = w->feed / 60.0,
+                             .speed = w->speed,
                              .acceleration = w->options.retract_acceleration};
     iso_planner_add(&w->planner, &move);
     w->totals.moves++;
