@@ -4,9 +4,8 @@
 #include "virtual/printer.h"
 
 #define TURN 6.283185307179586
-#define LEAST_CHORD 0.1     /* mm */
 #define MOST_CHORD 1.0      /* mm */
-#define CHORDS_OF_CIRCLE 72 /* at least, where the chords stay above LEAST_CHORD */
+#define CHORDS_OF_CIRCLE 72 /* at least */
 #define MOST_CHORDS 100000  /* of one command: more is no arc of a print */
 #define LEAST_ANGLE 5e-7    /* rad: closer ends are a whole circle, as in grbl */
 
@@ -45,7 +44,7 @@ static bool measure(arc *shape, const double start[2], const double end[2], bool
         angle += TURN;
     angle += clockwise ? -TURN * circles : TURN * circles;
     double chord = TURN * radius / CHORDS_OF_CIRCLE;
-    chord = chord < LEAST_CHORD ? LEAST_CHORD : chord > MOST_CHORD ? MOST_CHORD : chord;
+    chord = chord < MOST_CHORD ? chord : MOST_CHORD;
     double chords = ceil(fabs(angle) * radius / chord - 1e-9);
     if (!(chords <= MOST_CHORDS))
         return false;

@@ -356,6 +356,7 @@ bool fio_printer_command(fio_virtual_printer *printer, fio_line *line) {
         fio_text_string(&text, "\"");
         fio_printer_say(printer, bytes);
     }
-    fio_printer_say(printer, "ok");
+    if (!printer->halted) /* from then on Marlin is mute */
+        fio_printer_say(printer, "ok");
     return known;
 }

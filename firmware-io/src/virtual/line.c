@@ -20,9 +20,8 @@ static const char *skip_blanks(const char *p, const char *end) {
     return p;
 }
 
-/* Copy what is no comment; `;` ends the line, parentheses enclose. The XOR of all copied bytes is
- * kept at every '*', since the checksum stands behind the last one. Returns the copied length; may
- * exceed FIO_LINE_MOST in count, never in bytes. */
+/* Copy what is no comment; `;` ends the line, parentheses enclose. Control bytes become '?', so
+ * that an echo of the line can't be taken for two answers. Returns the length before the cut. */
 static size_t strip(fio_line *line, const char *bytes, size_t length) {
     size_t kept = 0;
     const char *end = bytes + length;
@@ -35,7 +34,7 @@ static size_t strip(fio_line *line, const char *bytes, size_t length) {
             continue;
         }
         if (kept < FIO_LINE_MOST)
-            line->text[kept] = *p;
+            line->text[kept] = (unsigned char)*p < ' ' && *p != '\t' ? '?' : *p;
         kept++;
     }
     return kept;

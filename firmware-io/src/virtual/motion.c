@@ -80,12 +80,12 @@ void fio_printer_wait(fio_virtual_printer *printer, double seconds, fio_activity
 void fio_printer_start_entry(fio_virtual_printer *printer, const fio_line *line) {
     fio_planner *planner = &printer->planner;
     int64_t sequence = ++printer->sequence;
+    printer->open = true; /* before any flush: its place in the ring still holds an older entry */
     while (planner->count > 0 &&
            sequence - planner->blocks[planner->oldest].sequence >= FIO_PENDING)
         take_block(printer);
     if (!printer->log.entry)
         return;
-    printer->open = true;
     flush_log(printer);
     fio_pending *pending = pending_of(printer, sequence);
     pending->blocks = 0;
@@ -98,12 +98,12 @@ void fio_printer_start_entry(fio_virtual_printer *printer, const fio_line *line)
 }
 
 void fio_printer_end_entry(fio_virtual_printer *printer) {
+    printer->open = false;
     if (!printer->log.entry)
         return;
     fio_executed *executed = &pending_of(printer, printer->sequence)->executed;
     memcpy(executed->position, printer->machine, sizeof printer->machine);
     executed->position[3] = printer->e;
-    printer->open = false;
     flush_log(printer);
 }
 
