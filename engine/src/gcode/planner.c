@@ -10,7 +10,7 @@ static double smaller(double a, double b) {
 void iso_planner_start(iso_planner *planner, double junction_deviation) {
     planner->junction_deviation = junction_deviation;
     planner->x = planner->y = planner->z = 0;
-    planner->entry_speed = planner->time = planner->idle_time = 0;
+    planner->entry = planner->time = planner->idle_time = 0;
     planner->count = 0;
 }
 
@@ -32,20 +32,22 @@ static void plan_backwards(iso_planner *planner) {
     }
 }
 
-/* Time the first `count` blocks and let them go. */
+/* Time the first `count` blocks and let them go. Squares of speeds go from block to block, so that
+ * no block waits for the root of the one before. */
 static void let_go(iso_planner *planner, int32_t count) {
-    double in = planner->entry_speed;
+    double in_squared = planner->entry, in = sqrt(in_squared);
     for (int32_t i = 0; i < count; i++) {
         const iso_planner_block *b = &planner->block[i];
         double next = i + 1 < planner->count ? b[1].entry : 0;
-        double out = sqrt(smaller(next, in * in + b->gain));
+        double out_squared = smaller(next, in_squared + b->gain), out = sqrt(out_squared);
         double t = time_of(b, in, out);
         planner->time += t;
         if (!b->extrudes)
             planner->idle_time += t;
+        in_squared = out_squared;
         in = out;
     }
-    planner->entry_speed = in;
+    planner->entry = in_squared;
     planner->count -= count;
     memmove(planner->block, planner->block + count,
             (size_t)planner->count * sizeof planner->block[0]);
@@ -97,5 +99,5 @@ void iso_planner_stop(iso_planner *planner) {
     plan_backwards(planner);
     let_go(planner, planner->count);
     planner->x = planner->y = planner->z = 0;
-    planner->entry_speed = 0;
+    planner->entry = 0;
 }

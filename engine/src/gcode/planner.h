@@ -26,7 +26,7 @@ typedef struct iso_planner_block {
 typedef struct iso_planner {
     double junction_deviation;
     double x, y, z;         /* direction of the last move; 0 if it moved no axis */
-    double entry_speed;     /* of block 0 */
+    double entry;           /* mm^2/s^2: of block 0 */
     double time, idle_time; /* s, of what left the window */
     int32_t count;
     iso_planner_block block[ISO_PLANNER_WINDOW];
