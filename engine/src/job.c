@@ -1,1 +1,452 @@
-typedef int iso_job_to_come;
+/* The order of a job's stages. Nothing else knows it.
+ *
+ *     models -> meshes -> slices -> per layer: region -> walls -> fill -> paths -> order -> G-code
+ *
+ * Layers are made in blocks, in parallel; ordering and writing a block is serial, since each path
+ * starts where the one before ended. So the bytes don't depend on the number of threads, and
+ * nothing but the slices outlives its block. */
+#include <isoslice/job.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "base/output.h"
+#include "base/parallel.h"
+#include "config/settings.h"
+#include "gcode/writer.h"
+#include "path/order.h"
+#include "planar/island.h"
+#include "planar/section.h"
+
+enum { LAYERS_PER_THREAD = 8 };
+
+enum {
+    STAGE_READ,
+    STAGE_SLICE,
+    STAGE_REGIONS,
+    STAGE_WALLS,
+    STAGE_FILL,
+    STAGE_ORDER,
+    STAGE_WRITE,
+    STAGE_COUNT
+};
+static const char *const stage_name[STAGE_COUNT] = {"read", "slice", "regions", "walls",
+                                                    "fill", "order", "write"};
+
+/* A layer on its way to the printer. */
+typedef struct iso_layer {
+    iso_paths paths;
+    double area; /* mm^2 of its region */
+    double seconds[STAGE_COUNT];
+} iso_layer;
+
+/* What each thread needs for itself. */
+typedef struct iso_hand {
+    iso_planar_scratch *planar;
+    iso_arena arena;
+    iso_region raw, region, island, inside;
+} iso_hand;
+
+typedef struct iso_job {
+    iso_report *report;
+    const iso_options *options;
+    const iso_job_hooks *hooks;
+    iso_pool *pool;
+    int32_t threads;
+    iso_hand *hand; /* [threads] */
+
+    int32_t model_count;
+    iso_mesh *mesh;     /* [model_count]; emptied once sliced */
+    iso_slices *slices; /* [model_count] */
+    iso_vec3 min, max;  /* of all models */
+    iso_levels levels;
+    double projected; /* mm^2 of all triangles seen from above */
+
+    int32_t block, block_first; /* layers in a block; its first */
+    iso_layer *layer;           /* [block] */
+    iso_paths ordered;
+    iso_output *output;
+    iso_gcode_writer *writer;
+    char *start, *end; /* expanded texts */
+    double seconds[STAGE_COUNT];
+} iso_job;
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void progress(const iso_job *job, double done, const char *stage) {
+    if (job->hooks->progress)
+        job->hooks->progress(job->hooks->payload, done, stage);
+}
+
+/* ---- models ---- */
+
+static iso_status read_models(iso_job *job, const char *const *input) {
+    for (int32_t i = 0; i < job->model_count; i++) {
+        iso_mesh *mesh = &job->mesh[i];
+        progress(job, 0.1 * i / job->model_count, stage_name[STAGE_READ]);
+        ISO_TRY(iso_mesh_read(mesh, input[i]));
+        ISO_TRY(iso_report_add_input(job->report, input[i], mesh));
+        if (i == 0) {
+            job->min = mesh->min;
+            job->max = mesh->max;
+        }
+        job->min = (iso_vec3){fmin(job->min.x, mesh->min.x), fmin(job->min.y, mesh->min.y),
+                              fmin(job->min.z, mesh->min.z)};
+        job->max = (iso_vec3){fmax(job->max.x, mesh->max.x), fmax(job->max.y, mesh->max.y),
+                              fmax(job->max.z, mesh->max.z)};
+    }
+    return ISO_OK;
+}
+
+static double projected_area(const iso_mesh *mesh) {
+    double sum = 0;
+    for (int32_t t = 0; t < mesh->triangle_count; t++) {
+        const int32_t *v = mesh->origin + 3 * (int64_t)t;
+        iso_vec3 a = mesh->position[v[0]], b = mesh->position[v[1]], c = mesh->position[v[2]];
+        sum += fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+    return sum / 2;
+}
+
+/* Is (x, y) in the bed's polygon, its edge included? */
+static bool on_bed(const iso_points *bed, double x, double y) {
+    bool inside = false;
+    for (int32_t i = 0; i < bed->count; i++) {
+        iso_vec2 a = bed->point[i], b = bed->point[i + 1 == bed->count ? 0 : i + 1];
+        double side = (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+        bool within = fmin(a.x, b.x) <= x && x <= fmax(a.x, b.x) && fmin(a.y, b.y) <= y &&
+                      y <= fmax(a.y, b.y);
+        if (side == 0 && within)
+            return true;
+        if ((a.y <= y) != (b.y <= y) && (side > 0) == (b.y > a.y))
+            inside = !inside;
+    }
+    return inside;
+}
+
+static iso_status check_volume(const iso_job *job) {
+    const iso_points *bed = &job->options->bed_shape;
+    if (job->max.z > job->options->max_print_height)
+        return iso_fail(ISO_OUTSIDE, "the model is %.2f mm high, max_print_height is %.2f mm",
+                        job->max.z, job->options->max_print_height);
+    if (on_bed(bed, job->min.x, job->min.y) && on_bed(bed, job->max.x, job->min.y) &&
+        on_bed(bed, job->max.x, job->max.y) && on_bed(bed, job->min.x, job->max.y))
+        return ISO_OK;
+    for (int32_t m = 0; m < job->model_count; m++)
+        for (int32_t v = 0; v < job->mesh[m].vertex_count; v++) {
+            iso_vec3 p = job->mesh[m].position[v];
+            if (!on_bed(bed, p.x, p.y))
+                return iso_fail(
+                    ISO_OUTSIDE,
+                    "the model, %.2f x %.2f mm, reaches beyond the bed at (%.2f, %.2f); "
+                    "see bed_shape and center",
+                    job->max.x - job->min.x, job->max.y - job->min.y, p.x, p.y);
+        }
+    return ISO_OK;
+}
+
+static iso_status place_models(iso_job *job) {
+    iso_vec2 center = iso_options_center(job->options);
+    iso_vec3 by = {center.x - (job->min.x + job->max.x) / 2,
+                   center.y - (job->min.y + job->max.y) / 2, -job->min.z};
+    for (int32_t i = 0; i < job->model_count; i++)
+        iso_mesh_translate(&job->mesh[i], by);
+    job->min = (iso_vec3){job->min.x + by.x, job->min.y + by.y, 0};
+    job->max = (iso_vec3){job->max.x + by.x, job->max.y + by.y, job->max.z + by.z};
+    return check_volume(job);
+}
+
+/* Each mesh is let go as soon as it is sliced. */
+static iso_status slice_models(iso_job *job) {
+    double heights[ISO_NUMBERS_MAX + 1];
+    int32_t count = iso_options_heights(heights, job->options);
+    iso_report *report = job->report;
+    ISO_TRY(iso_levels_from_heights(&job->levels, heights, count, job->max.z));
+    if (job->levels.count == 0)
+        return iso_fail(ISO_OUTSIDE,
+                        "the model is %.4f mm high: too low for a first layer of %.3f mm",
+                        job->max.z, heights[0]);
+    report->layer_count = job->levels.count;
+    report->printed_height = job->levels.top[job->levels.count - 1];
+    for (int32_t i = 0; i < job->model_count; i++) {
+        iso_mesh *mesh = &job->mesh[i];
+        ISO_TRY(iso_slice_planar(&job->slices[i], mesh, &job->levels));
+        report->mesh_volume += iso_mesh_volume_between(mesh, 0, report->printed_height);
+        job->projected += projected_area(mesh);
+        iso_mesh_free(mesh);
+    }
+    return ISO_OK;
+}
+
+/* Slices at the middles of layers miss the volume by less than half a layer under all surface seen
+ * from above, and usually by far less. More than that is a wrong slice. */
+static iso_status verify_volume(const iso_job *job) {
+    const iso_report *report = job->report;
+    double sliced = 0, thickest = 0;
+    for (int32_t i = 0; i < job->levels.count; i++) {
+        double area = 0;
+        for (int32_t m = 0; m < job->model_count; m++)
+            area += section_area(&job->slices[m], i);
+        sliced += area * job->levels.height[i];
+        thickest = fmax(thickest, job->levels.height[i]);
+    }
+    double allowed = 1e-6 * report->mesh_volume + job->projected * thickest / 2;
+    if (fabs(sliced - report->mesh_volume) > allowed)
+        return iso_fail(ISO_NOT_VERIFIED,
+                        "the slices hold %.3f mm^3, the model %.3f mm^3: nothing was written",
+                        sliced, report->mesh_volume);
+    return ISO_OK;
+}
+
+/* ---- layers ---- */
+
+/* Walls and fill of one island, printed together. */
+static iso_status make_island(iso_layer *layer, iso_hand *hand, const iso_layer_settings *settings,
+                              int32_t group) {
+    iso_wall_options wall = settings->wall;
+    double begun = now();
+    wall.like.group = group;
+    ISO_TRY(iso_walls(&layer->paths, &hand->inside, &hand->island, &wall, hand->planar));
+    double walled = now();
+    for (int32_t pass = 0; pass < settings->fill_count; pass++) {
+        iso_fill_options fill = settings->fill[pass];
+        fill.like.group = group;
+        ISO_TRY(iso_fill_rectilinear(&layer->paths, &hand->inside, &fill, &hand->arena));
+    }
+    layer->seconds[STAGE_WALLS] += walled - begun;
+    layer->seconds[STAGE_FILL] += now() - walled;
+    return ISO_OK;
+}
+
+static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_job *job, int32_t index) {
+    double begun = now();
+    iso_region_clear(&hand->raw);
+    for (int32_t m = 0; m < job->model_count; m++)
+        ISO_TRY(section_add(&hand->raw, &job->slices[m], index));
+    ISO_TRY(iso_region_simplify(&hand->region, &hand->raw, settings_thinning(job->options),
+                                hand->planar));
+    layer->area = (double)iso_region_double_area(&hand->region) / 2 /
+                  ((double)ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
+    layer->seconds[STAGE_REGIONS] += now() - begun;
+    return ISO_OK;
+}
+
+static iso_status make_layer(void *payload, int64_t number, int worker) {
+    iso_job *job = payload;
+    iso_layer *layer = &job->layer[number];
+    iso_hand *hand = &job->hand[worker];
+    int32_t index = job->block_first + (int32_t)number;
+    iso_layer_settings settings;
+    iso_islands islands;
+    settings_of_layer(&settings, job->options, index, job->levels.height[index]);
+    memset(layer->seconds, 0, sizeof layer->seconds);
+    iso_paths_clear(&layer->paths);
+    ISO_TRY(make_region(layer, hand, job, index));
+    ISO_TRY(iso_skirt(&layer->paths, &hand->region, settings.skirt_loops, settings.skirt_distance,
+                      &settings.skirt, hand->planar));
+    iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
+    iso_status status = islands_of(&islands, &hand->region, &hand->arena);
+    for (int32_t i = 0; status == ISO_OK && i < islands.count; i++) {
+        status = island_copy(&hand->island, &hand->region, &islands, i);
+        if (status == ISO_OK)
+            status = make_island(layer, hand, &settings, i);
+    }
+    iso_arena_pop(&hand->arena, mark);
+    return status;
+}
+
+static iso_status write_layer(iso_job *job, int32_t number, iso_point *position) {
+    iso_layer *layer = &job->layer[number];
+    int32_t index = job->block_first + number;
+    double begun = now();
+    ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, position, &job->hand[0].arena));
+    double ordered = now();
+    double top = job->levels.top[index] + job->options->z_offset;
+    iso_gcode_layer_info info = {.index = index,
+                                 .z = iso_units(top),
+                                 .height = iso_units(job->levels.height[index]),
+                                 .paths = &job->ordered};
+    ISO_TRY(iso_gcode_layer(job->writer, &info));
+    layer->seconds[STAGE_ORDER] += ordered - begun;
+    layer->seconds[STAGE_WRITE] += now() - ordered;
+    for (int s = 0; s < STAGE_COUNT; s++)
+        job->seconds[s] += layer->seconds[s];
+    job->report->sliced_volume += layer->area * job->levels.height[index];
+    return ISO_OK;
+}
+
+static iso_status make_layers(iso_job *job) {
+    iso_point position = {0, 0};
+    for (job->block_first = 0; job->block_first < job->levels.count;
+         job->block_first += job->block) {
+        int32_t left = job->levels.count - job->block_first;
+        int32_t count = left < job->block ? left : job->block;
+        progress(job, 0.15 + 0.85 * job->block_first / job->levels.count, "layers");
+        ISO_TRY(iso_parallel_for(job->pool, count, make_layer, job));
+        for (int32_t i = 0; i < count; i++)
+            ISO_TRY(write_layer(job, i, &position));
+    }
+    progress(job, 1, "done");
+    return ISO_OK;
+}
+
+/* ---- output ---- */
+
+static iso_status config_line(void *payload, const char *key, const char *value) {
+    iso_output *output = payload;
+    iso_output_write(output, "; ", 2);
+    iso_output_write(output, key, strlen(key));
+    iso_output_write(output, " = ", 3);
+    iso_output_write(output, value, strlen(value));
+    return iso_output_write(output, "\n", 1);
+}
+
+typedef struct iso_config_block {
+    const iso_options *options;
+} iso_config_block;
+
+static iso_status config_lines(iso_output *output, void *payload) {
+    const iso_config_block *block = payload;
+    return iso_options_print(block->options, config_line, output);
+}
+
+static iso_status begin_output(iso_job *job, const char *path) {
+    const iso_options *options = job->options;
+    ISO_TRY(ISO_ALLOCATE(job->start, ISO_TEXT_SIZE));
+    ISO_TRY(ISO_ALLOCATE(job->end, ISO_TEXT_SIZE));
+    ISO_TRY(iso_options_expand(job->start, ISO_TEXT_SIZE, options->start_gcode, options));
+    ISO_TRY(iso_options_expand(job->end, ISO_TEXT_SIZE, options->end_gcode, options));
+    iso_gcode_options gcode =
+        settings_of_gcode(options, job->start, job->end, job->hooks->timestamp);
+    ISO_TRY(iso_output_open(&job->output, path));
+    ISO_TRY(iso_gcode_writer_new(&job->writer, job->output, &gcode));
+    return iso_gcode_begin(job->writer);
+}
+
+static iso_status finish_output(iso_job *job) {
+    iso_config_block block = {job->options};
+    ISO_TRY(iso_gcode_finish(&job->report->print, job->writer, config_lines, &block));
+    iso_output *output = job->output;
+    job->output = NULL; /* commit frees it, whatever comes of it */
+    return iso_output_commit(output);
+}
+
+/* ---- the job ---- */
+
+static iso_status job_new(iso_job *job, int32_t input_count) {
+    job->model_count = input_count;
+    ISO_TRY(iso_pool_new(&job->pool, job->hooks->threads));
+    job->threads = job->report->threads = iso_pool_threads(job->pool);
+    job->block = LAYERS_PER_THREAD * job->threads;
+    ISO_TRY(ISO_ALLOCATE(job->mesh, input_count));
+    memset(job->mesh, 0, (size_t)input_count * sizeof *job->mesh);
+    ISO_TRY(ISO_ALLOCATE(job->slices, input_count));
+    memset(job->slices, 0, (size_t)input_count * sizeof *job->slices);
+    ISO_TRY(ISO_ALLOCATE(job->layer, job->block));
+    memset(job->layer, 0, (size_t)job->block * sizeof *job->layer);
+    ISO_TRY(ISO_ALLOCATE(job->hand, job->threads));
+    memset(job->hand, 0, (size_t)job->threads * sizeof *job->hand);
+    for (int32_t i = 0; i < job->threads; i++)
+        ISO_TRY(iso_planar_scratch_new(&job->hand[i].planar));
+    return ISO_OK;
+}
+
+static void hand_free(iso_hand *hand) {
+    iso_planar_scratch_free(hand->planar);
+    iso_arena_free(&hand->arena);
+    iso_region_free(&hand->raw);
+    iso_region_free(&hand->region);
+    iso_region_free(&hand->island);
+    iso_region_free(&hand->inside);
+}
+
+static void job_free(iso_job *job) {
+    iso_gcode_writer_free(job->writer);
+    iso_output_abandon(job->output);
+    for (int32_t i = 0; job->mesh && i < job->model_count; i++)
+        iso_mesh_free(&job->mesh[i]);
+    for (int32_t i = 0; job->slices && i < job->model_count; i++)
+        iso_slices_free(&job->slices[i]);
+    for (int32_t i = 0; job->layer && i < job->block; i++)
+        iso_paths_free(&job->layer[i].paths);
+    for (int32_t i = 0; job->hand && i < job->threads; i++)
+        hand_free(&job->hand[i]);
+    iso_paths_free(&job->ordered);
+    iso_levels_free(&job->levels);
+    iso_release(job->mesh);
+    iso_release(job->slices);
+    iso_release(job->layer);
+    iso_release(job->hand);
+    iso_release(job->start);
+    iso_release(job->end);
+    iso_pool_free(job->pool);
+}
+
+static void report_kernel(iso_job *job) {
+    for (int32_t i = 0; job->hand && i < job->threads && job->hand[i].planar; i++) {
+        iso_planar_counts c = iso_planar_get_counts(job->hand[i].planar);
+        iso_planar_counts *sum = &job->report->kernel;
+        sum->operations += c.operations;
+        sum->untouched += c.untouched;
+        sum->arranged += c.arranged;
+        sum->edges += c.edges;
+        sum->collisions += c.collisions;
+    }
+}
+
+static iso_status report_stages(iso_job *job, double begun) {
+    struct rusage usage;
+    report_kernel(job);
+    job->report->seconds = now() - begun;
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+        job->report->peak_memory_kib = usage.ru_maxrss;
+    for (int s = 0; s < STAGE_COUNT; s++)
+        ISO_TRY(iso_report_add_stage(job->report, stage_name[s], job->seconds[s], 0));
+    return ISO_OK;
+}
+
+static iso_status load(iso_job *job, const char *const *input, int32_t input_count) {
+    double begun = now();
+    if (input_count < 1)
+        return iso_fail(ISO_USAGE, "no model was given");
+    ISO_TRY(iso_options_check(job->options));
+    ISO_TRY(job_new(job, input_count));
+    ISO_TRY(read_models(job, input));
+    ISO_TRY(place_models(job));
+    double read = now();
+    progress(job, 0.1, stage_name[STAGE_SLICE]);
+    ISO_TRY(slice_models(job));
+    ISO_TRY(verify_volume(job));
+    job->seconds[STAGE_READ] = read - begun;
+    job->seconds[STAGE_SLICE] = now() - read;
+    return ISO_OK;
+}
+
+static iso_status print_job(iso_job *job, const char *const *input, int32_t input_count,
+                            const char *output) {
+    ISO_TRY(load(job, input, input_count));
+    ISO_TRY(begin_output(job, output));
+    ISO_TRY(make_layers(job));
+    double begun = now();
+    ISO_TRY(finish_output(job));
+    job->seconds[STAGE_WRITE] += now() - begun;
+    return ISO_OK;
+}
+
+iso_status iso_job_run(iso_report *report, const iso_options *options, const char *const *input,
+                       int32_t input_count, const char *output, const iso_job_hooks *hooks) {
+    static const iso_job_hooks none;
+    iso_job job = {.report = report, .options = options, .hooks = hooks ? hooks : &none};
+    double begun = now();
+    iso_status status = print_job(&job, input, input_count, output);
+    iso_status reported = report_stages(&job, begun);
+    job_free(&job);
+    return status != ISO_OK ? status : reported;
+}

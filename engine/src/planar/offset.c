@@ -1,15 +1,17 @@
 /* Offsets by a raw contour and winding numbers.
  *
- * The raw contour is the convolution of the region's boundary with a circle: each edge's shifted copy, joined
- * around opening corners, and across closing corners by the chord between the two copies' ends, in place of
- * the arc run backwards. When growing, its winding about q is the Euler characteristic of what the region
- * shares with the disc around q, or more: 0 outside the offset; the number of pieces inside it, at least 1,
- * unless a whole hole fits in the disc. Such holes vanish anyway and are left out beforehand; the same goes, in the
- * complement, for islands when shrinking. So winding >= 1 is the offset, exactly. (Going back through the original
- * vertex at closing corners needs no such proviso, but a fillet of n short edges then costs n^2 crossings.)
+ * The raw contour is the convolution of the region's boundary with a circle: each edge's shifted
+ * copy, joined around opening corners, and across closing corners by the chord between the two
+ * copies' ends, in place of the arc run backwards. When growing, its winding about q is the Euler
+ * characteristic of what the region shares with the disc around q, or more: 0 outside the offset;
+ * the number of pieces inside it, at least 1, unless a whole hole fits in the disc. Such holes
+ * vanish anyway and are left out beforehand; the same goes, in the complement, for islands when
+ * shrinking. So winding >= 1 is the offset, exactly. (Going back through the original vertex at
+ * closing corners needs no such proviso, but a fillet of n short edges then costs n^2 crossings.)
  *
- * A closing corner whose two copies meet within half of both edges is cut there at once: that is the convolution
- * of the region with the corner filled up to the circle that touches both edges, which grows to the same. */
+ * A closing corner whose two copies meet within half of both edges is cut there at once: that is
+ * the convolution of the region with the corner filled up to the circle that touches both edges,
+ * which grows to the same. */
 #include <math.h>
 
 #include <isoslice/planar.h>
@@ -138,8 +140,8 @@ static iso_status put_contour(iso_rawing *r, const iso_point *point, int32_t cou
     return ISO_OK;
 }
 
-/* An outer contour that shrinks, or a hole that is grown over, is gone if it fits in a band of twice the
- * distance, and so if it fits in a disc. */
+/* An outer contour that shrinks, or a hole that is grown over, is gone if it fits in a band of
+ * twice the distance, and so if it fits in a disc. */
 static bool vanishes(const iso_point *point, int32_t count, double sign, double distance) {
     bool outer = contour_double_area(point, count) > 0;
     if (outer == (sign > 0))

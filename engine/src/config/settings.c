@@ -1,0 +1,123 @@
+#include "config/settings.h"
+
+#include <isoslice/version.h>
+
+/* A wall no longer around than a circle of this radius is a small one; the figure is PrusaSlicer's.
+ */
+#define SMALL_RADIUS 6.5
+#define PI 3.14159265358979323846
+
+static iso_bead bead_of(const iso_options *options, iso_role role, bool first, double height) {
+    return iso_bead_of(iso_units(iso_options_width(options, role, first, height)),
+                       iso_units(height));
+}
+
+/* Of gcode_resolution, the part that sections may use up; arcs of offsets take as much, and the
+ * rest is for the rounding of both. */
+int32_t settings_thinning(const iso_options *options) {
+    return iso_units(0.4 * options->gcode_resolution);
+}
+
+static void set_walls(iso_layer_settings *s, const iso_options *options, bool first,
+                      double height) {
+    int32_t tolerance = settings_thinning(options);
+    s->wall = (iso_wall_options){
+        .count = options->perimeters,
+        .external = bead_of(options, ISO_ROLE_EXTERNAL_PERIMETER, first, height),
+        .inner = bead_of(options, ISO_ROLE_PERIMETER, first, height),
+        .external_first = options->external_perimeters_first,
+        .small_length = iso_units(2 * PI * SMALL_RADIUS),
+        .arc_tolerance = tolerance > 1 ? tolerance : 1,
+    };
+}
+
+/* Layers take turns of 90 degrees. At full density lines are fitted to each part; sparse ones keep
+ * their place from layer to layer. A grid is two passes of half the density. */
+static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
+                     double height) {
+    double density = options->fill_density / 100;
+    bool solid = density >= 1, grid = options->fill_pattern == ISO_PATTERN_GRID && !solid;
+    iso_role role = solid ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL;
+    iso_bead bead = bead_of(options, role, first, height);
+    double overlap = iso_options_infill_overlap(options);
+    s->wall.fill_inset = bead.spacing / 2;
+    if (!solid)
+        s->wall.fill_inset -= iso_units(overlap);
+    s->fill_count = density <= 0 ? 0 : grid ? 2 : 1;
+    for (int32_t pass = 0; pass < s->fill_count; pass++) {
+        iso_fill_options *fill = &s->fill[pass];
+        *fill = iso_fill_defaults(bead, density / s->fill_count);
+        fill->angle = options->fill_angle + 90 * ((grid ? pass : index) & 1);
+        fill->like.rank = s->wall.count + pass;
+    }
+}
+
+void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_t index,
+                       double height) {
+    bool first = index == 0;
+    set_walls(s, options, first, height);
+    set_fill(s, options, index, first, height);
+    s->skirt = bead_of(options, ISO_ROLE_SKIRT, first, height);
+    s->skirt_loops = first ? options->skirts : 0;
+    s->skirt_distance = iso_units(options->skirt_distance) + s->skirt.width / 2;
+}
+
+static void set_speeds(iso_gcode_options *g, const iso_options *options) {
+    for (int role = 0; role < ISO_ROLE_COUNT; role++)
+        g->speed[role] = iso_options_speed(options, (iso_role)role, false, false);
+    g->small_perimeter_speed = iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, false);
+    g->first_layer_speed = iso_options_speed(options, ISO_ROLE_PERIMETER, false, true);
+    g->travel_speed = options->travel_speed;
+    g->travel_speed_z = options->travel_speed_z;
+}
+
+static void set_cooling(iso_gcode_options *g, const iso_options *options) {
+    g->cooling = options->cooling;
+    g->fan_always_on = options->fan_always_on;
+    g->min_fan_speed = options->min_fan_speed;
+    g->max_fan_speed = options->max_fan_speed;
+    g->disable_fan_first_layers = options->disable_fan_first_layers;
+    g->fan_below_layer_time = options->fan_below_layer_time;
+    g->slowdown_below_layer_time = options->slowdown_below_layer_time;
+    g->min_print_speed = options->min_print_speed;
+}
+
+static void set_machine(iso_gcode_options *g, const iso_options *options) {
+    g->flavour = (iso_flavour)options->gcode_flavor;
+    g->use_relative_e_distances = options->use_relative_e_distances;
+    g->temperature = options->temperature;
+    g->first_layer_temperature = options->first_layer_temperature;
+    g->bed_temperature = options->bed_temperature;
+    g->first_layer_bed_temperature = options->first_layer_bed_temperature;
+    g->acceleration = options->machine_max_acceleration_extruding;
+    g->travel_acceleration = options->machine_max_acceleration_travel;
+    g->retract_acceleration = options->machine_max_acceleration_retracting;
+    g->junction_deviation = options->machine_max_junction_deviation;
+    g->max_speed_z = options->machine_max_feedrate_z;
+}
+
+static void set_filament(iso_gcode_options *g, const iso_options *options) {
+    g->filament_diameter = options->filament_diameter;
+    g->filament_density = options->filament_density;
+    g->extrusion_multiplier = options->extrusion_multiplier;
+    g->retract_length = options->retract_length;
+    g->retract_speed = options->retract_speed;
+    g->deretract_speed = options->deretract_speed;
+    g->retract_restart_extra = options->retract_restart_extra;
+    g->retract_before_travel = options->retract_before_travel;
+    g->retract_lift = options->retract_lift;
+}
+
+iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
+                                    int64_t timestamp) {
+    iso_gcode_options g = iso_gcode_defaults();
+    set_speeds(&g, options);
+    set_cooling(&g, options);
+    set_machine(&g, options);
+    set_filament(&g, options);
+    g.start_gcode = start;
+    g.end_gcode = end;
+    g.generator = "isoslice " ISO_VERSION;
+    g.timestamp = timestamp;
+    return g;
+}

@@ -1,0 +1,70 @@
+#include <isoslice/wall.h>
+
+#include "base/memory.h"
+#include "base/sort.h"
+#include "planar/predicate.h"
+
+static bool hull_less(const iso_point *a, const iso_point *b) {
+    return point_less(*a, *b);
+}
+ISO_SORT(sort_hull, iso_point, hull_less)
+
+/* Andrew's monotone chain: lower hull left to right, then the upper one back. `point` is sorted in
+ * place; hull has room for count + 1. Returns the hull's size, counter-clockwise. */
+static int32_t convex_hull(iso_point *hull, iso_point *point, int32_t count) {
+    sort_hull(point, count);
+    int32_t n = 0;
+    for (int32_t i = 0; i < count; i++) {
+        while (n >= 2 && orient2d(hull[n - 2], hull[n - 1], point[i]) <= 0)
+            n--;
+        hull[n++] = point[i];
+    }
+    int32_t lower = n + 1;
+    for (int32_t i = count - 1; i-- > 0;) {
+        while (n >= lower && orient2d(hull[n - 2], hull[n - 1], point[i]) <= 0)
+            n--;
+        hull[n++] = point[i];
+    }
+    return n - 1;
+}
+
+static iso_status hull_of(iso_region *out, const iso_region *region) {
+    int32_t count = region->first[region->count];
+    iso_point *point;
+    ISO_TRY(ISO_ALLOCATE(point, 2 * (int64_t)count + 1));
+    memcpy(point, region->point, (size_t)count * sizeof *point);
+    int32_t n = convex_hull(point + count, point, count);
+    iso_status status = iso_region_add(out, point + count, n);
+    iso_release(point);
+    return status;
+}
+
+static iso_status draw_skirt(iso_paths *paths, const iso_region *hull, int32_t loops,
+                             iso_offset_options *offset, const iso_bead *bead, iso_region *loop,
+                             iso_planar_scratch *scratch) {
+    iso_path like = {.role = ISO_ROLE_SKIRT, .closed = 1, .object = -1, .group = -1};
+    for (int32_t i = loops; i-- > 0; like.rank++) {
+        iso_offset_options grown = *offset;
+        grown.distance += i * bead->spacing;
+        ISO_TRY(iso_offset(loop, hull, &grown, scratch));
+        for (int32_t c = 0; c < loop->count; c++)
+            ISO_TRY(iso_paths_add(paths, &like, loop->point + loop->first[c],
+                                  loop->first[c + 1] - loop->first[c], bead->width, bead->area));
+    }
+    return ISO_OK;
+}
+
+iso_status iso_skirt(iso_paths *paths, const iso_region *region, int32_t loops, int32_t distance,
+                     const iso_bead *bead, iso_planar_scratch *scratch) {
+    if (loops <= 0 || region->count == 0)
+        return ISO_OK;
+    iso_offset_options offset = iso_offset_defaults(distance);
+    offset.join = ISO_JOIN_ROUND;
+    iso_region hull = {0}, loop = {0};
+    iso_status status = hull_of(&hull, region);
+    if (status == ISO_OK)
+        status = draw_skirt(paths, &hull, loops, &offset, bead, &loop, scratch);
+    iso_region_free(&hull);
+    iso_region_free(&loop);
+    return status;
+}
