@@ -151,6 +151,9 @@ ISO_API iso_status iso_options_expand(char *out, size_t size, const char *text,
 /* Values that follow from several options, by PrusaSlicer's rules. Heights and widths in mm, speeds
  * in mm/s. */
 ISO_API double iso_options_first_height(const iso_options *options);
+/* All heights from the bed up, for iso_levels_from_heights: the last one goes on. Returns how many,
+ * at most ISO_NUMBERS_MAX + 1. */
+ISO_API int32_t iso_options_heights(double height[ISO_NUMBERS_MAX + 1], const iso_options *options);
 ISO_API double iso_options_width(const iso_options *options, iso_role role, bool first_layer,
                                  double layer_height);
 ISO_API double iso_options_speed(const iso_options *options, iso_role role, bool small_perimeter,

@@ -12,6 +12,16 @@ double iso_options_first_height(const iso_options *options) {
     return iso_relative_of(options->first_layer_height, options->layer_height);
 }
 
+int32_t iso_options_heights(double height[ISO_NUMBERS_MAX + 1], const iso_options *options) {
+    int32_t count = options->layer_heights.count;
+    for (int32_t i = 0; i < count; i++)
+        height[i] = options->layer_heights.value[i];
+    if (count == 0)
+        height[count++] = iso_options_first_height(options);
+    height[count++] = options->layer_height;
+    return count;
+}
+
 static iso_relative width_option(const iso_options *options, iso_role role) {
     switch (role) {
     case ISO_ROLE_EXTERNAL_PERIMETER:

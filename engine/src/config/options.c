@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "config/spelling.h"
 #include "config/value.h"
 
 static const iso_option_info option_table[] = {
@@ -47,37 +48,11 @@ int32_t iso_option_find(const char *key) {
     return -1;
 }
 
-enum { KEY_MAX = 48 };
-
-static int smaller(int a, int b) {
-    return a < b ? a : b;
-}
-
-/* How many letters have to be changed, added or dropped, at most KEY_MAX. */
-static int edit_distance(const char *a, const char *b) {
-    int row[KEY_MAX + 1];
-    int n = (int)strlen(b);
-    if (n > KEY_MAX)
-        return KEY_MAX;
-    for (int j = 0; j <= n; j++)
-        row[j] = j;
-    for (int i = 0; a[i]; i++) {
-        int corner = row[0];
-        row[0] = i + 1;
-        for (int j = 0; j < n; j++) {
-            int changed = corner + (a[i] != (b[j] == '-' ? '_' : b[j]));
-            corner = row[j + 1];
-            row[j + 1] = smaller(changed, 1 + smaller(row[j], corner));
-        }
-    }
-    return row[n];
-}
-
 const char *iso_option_suggest(const char *key) {
     const char *nearest = NULL;
-    int best = smaller(4, 1 + (int)strlen(key) / 3);
+    int best = iso_edit_tolerance(key) + 1;
     for (int32_t i = 0; i < OPTION_COUNT; i++) {
-        int distance = edit_distance(option_table[i].key, key);
+        int distance = iso_edit_distance(option_table[i].key, key);
         if (distance < best) {
             best = distance;
             nearest = option_table[i].key;

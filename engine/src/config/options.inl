@@ -145,11 +145,11 @@ ISO_OPTION(center, PLACE, "", "mm", -1600, 1600, "Printer",
 ISO_OPTION(gcode_flavor, FLAVOUR, "marlin2", "", 0, 0, "Printer", "Dialect of the G-code.")
 ISO_OPTION(use_relative_e_distances, BOOL, "1", "", 0, 1, "Printer",
            "Extrusion counts from the move before (M83), not from the start (M82).")
-ISO_OPTION(machine_max_acceleration_extruding, NUMBER, "1500", "mm/s2", 1, 100000, "Printer",
+ISO_OPTION(machine_max_acceleration_extruding, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
            "The firmware's acceleration of printing moves, for the estimate of time.")
-ISO_OPTION(machine_max_acceleration_travel, NUMBER, "1500", "mm/s2", 1, 100000, "Printer",
+ISO_OPTION(machine_max_acceleration_travel, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
            "The firmware's acceleration of travel moves, for the estimate of time.")
-ISO_OPTION(machine_max_acceleration_retracting, NUMBER, "1500", "mm/s2", 1, 100000, "Printer",
+ISO_OPTION(machine_max_acceleration_retracting, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
            "The firmware's acceleration of retractions, for the estimate of time.")
 ISO_OPTION(machine_max_feedrate_z, NUMBER, "12", "mm/s", 0.1, 1000, "Printer",
            "The firmware's highest speed of the Z axis, for the estimate of time.")
@@ -157,13 +157,11 @@ ISO_OPTION(machine_max_junction_deviation, NUMBER, "0.013", "mm", 0.001, 1, "Pri
            "The firmware's junction deviation, for the estimate of time.")
 
 ISO_OPTION(start_gcode, TEXT,
-           "M140 S[first_layer_bed_temperature] ; heat the bed\\n"
-           "M104 S[first_layer_temperature] ; and the nozzle\\n"
            "G28 ; home all axes\\n"
-           "G1 Z5 F1200 ; lift the nozzle\\n"
-           "M190 S[first_layer_bed_temperature] ; wait for both\\n"
-           "M109 S[first_layer_temperature]",
-           "", 0, 0, "G-code", "What comes before the print. [key] stands for an option's value.")
+           "G1 Z5 F1200 ; lift the nozzle",
+           "", 0, 0, "G-code",
+           "What comes before the print. [key] stands for an option's value. Heating comes by "
+           "itself if there is none in it.")
 ISO_OPTION(end_gcode, TEXT,
            "M104 S0 ; nozzle off\\n"
            "M140 S0 ; bed off\\n"
@@ -171,6 +169,8 @@ ISO_OPTION(end_gcode, TEXT,
            "G28 X0 ; move out of the way\\n"
            "M84 ; motors off",
            "", 0, 0, "G-code", "What comes after the print. [key] stands for an option's value.")
+ISO_OPTION(remaining_times, BOOL, "1", "", 0, 1, "G-code",
+           "Tell the printer how much is done and how long it will take still (M73).")
 ISO_OPTION(gcode_comments, BOOL, "0", "", 0, 1, "G-code", "Say in a comment what each move is for.")
 
 #endif

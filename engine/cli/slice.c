@@ -1,0 +1,142 @@
+/* isoslice slice: models become G-code. */
+#include <isoslice/job.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "verbs.h"
+
+extern __typeof__(iso_job_run) iso_job_run __attribute__((weak));
+
+/* ---- progress ---- */
+
+typedef struct progress {
+    double drawn; /* seconds, when the line was drawn last */
+    bool shown;
+} progress;
+
+static double clock_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
+}
+
+/* One line that is drawn over itself, twenty times a second at most. */
+static void draw_progress(void *payload, double done, const char *stage) {
+    progress *line = payload;
+    double now = clock_seconds();
+    if (line->shown && now - line->drawn < 0.05)
+        return;
+    fprintf(stderr, "\r\033[K%3.0f%% %s", done * 100, stage);
+    line->drawn = now;
+    line->shown = true;
+}
+
+static void clear_progress(const progress *line) {
+    if (line->shown)
+        fprintf(stderr, "\r\033[K");
+}
+
+/* ---- what there is to say ---- */
+
+static iso_status note_settings(iso_report *report, const iso_config_notes *notes) {
+    if (notes->unknown_count > 0)
+        ISO_TRY(iso_report_warn(report, "unknown-setting", "%d %s: %s", notes->unknown_count,
+                                notes->unknown_count == 1
+                                    ? "setting is not isoslice's and was left out"
+                                    : "settings are not isoslice's and were left out",
+                                notes->unknown));
+    if (notes->unused_count > 0)
+        ISO_TRY(iso_report_warn(report, "setting-not-followed",
+                                "not known, so the usual value stays: %s", notes->unused));
+    return ISO_OK;
+}
+
+/* The report has all of it. */
+static void print_warnings(const iso_report *report) {
+    enum { SHOWN = 240 };
+    for (int32_t i = 0; i < report->warning_count; i++) {
+        const char *message = report->warning[i].message;
+        fprintf(stderr, "isoslice: warning: %.*s%s [%s]\n", SHOWN, message,
+                strlen(message) > SHOWN ? "..." : "", report->warning[i].code);
+    }
+}
+
+static void print_summary(const iso_report *report, const char *output) {
+    int seconds = (int)(report->print.time + 0.5);
+    fprintf(stderr, "%s: %d layers, %.2f m of filament, %dh %dm %ds to print; sliced in %.2f s\n",
+            strcmp(output, "-") == 0 ? "standard output" : output, report->layer_count,
+            report->print.filament_mm / 1000, seconds / 3600, seconds / 60 % 60, seconds % 60,
+            report->seconds);
+}
+
+/* ---- the job ---- */
+
+/* The date in the G-code: a constant one unless one is asked for, so that output stays the same.
+ * SOURCE_DATE_EPOCH is https://reproducible-builds.org/specs/source-date-epoch */
+static iso_status choose_timestamp(int64_t *timestamp, bool real) {
+    const char *text = getenv("SOURCE_DATE_EPOCH");
+    *timestamp = real ? (int64_t)time(NULL) : 0;
+    if (real || !text || !*text)
+        return ISO_OK;
+    size_t digits = strspn(text, "0123456789");
+    if (text[digits] != 0 || digits > 15)
+        return iso_fail(ISO_USAGE, "SOURCE_DATE_EPOCH: %.40s is not a number of seconds", text);
+    *timestamp = strtoll(text, NULL, 10);
+    return ISO_OK;
+}
+
+static iso_status run_job(iso_report *report, const iso_arguments *arguments, const char *output) {
+    progress line = {0};
+    iso_job_hooks hooks = {.threads = arguments->threads};
+    bool talks = arguments->progress && !arguments->quiet;
+    if (!iso_job_run)
+        return iso_fail(ISO_BUG, "this build has no job");
+    ISO_TRY(choose_timestamp(&hooks.timestamp, arguments->timestamp));
+    if (talks) {
+        hooks.progress = draw_progress;
+        hooks.payload = &line;
+    }
+    iso_status status = iso_job_run(report, &arguments->options, arguments->file,
+                                    arguments->file_count, output, &hooks);
+    clear_progress(&line);
+    if (status == ISO_OK && talks)
+        print_summary(report, output);
+    return status;
+}
+
+/* A job that failed has a report too; the first failure is the one that counts. */
+static iso_status finish(iso_report *report, const iso_arguments *arguments, iso_status status) {
+    char message[1024];
+    snprintf(message, sizeof message, "%s", iso_error_message());
+    iso_status after = note_settings(report, &arguments->notes);
+    if (!arguments->quiet)
+        print_warnings(report);
+    if (after == ISO_OK && arguments->report)
+        after = iso_report_write(report, &arguments->options, status, message, arguments->report);
+    if (status == ISO_OK)
+        return after;
+    if (after != ISO_OK)
+        fprintf(stderr, "isoslice: %s\n", iso_error_message());
+    return iso_fail(status, "%s", message);
+}
+
+iso_status iso_verb_slice(const iso_arguments *arguments) {
+    char name[4096];
+    const char *output = arguments->output;
+    if (arguments->file_count == 0)
+        return iso_fail(ISO_USAGE, "no model given; see isoslice --help");
+    if (!output) {
+        ISO_TRY(iso_replace_ending(name, sizeof name, arguments->file[0], ".gcode"));
+        output = name;
+    }
+    if (arguments->report && strcmp(arguments->report, output) == 0)
+        return iso_fail(ISO_USAGE, "%s: can't hold both the G-code and the report", output);
+    iso_report report = {0};
+    iso_status status = run_job(&report, arguments, output);
+    status = finish(&report, arguments, status);
+    iso_report_free(&report);
+    return status;
+}

@@ -1,0 +1,24 @@
+/* What the program does, one function a verb, and what it prints about itself. */
+#ifndef ISO_CLI_VERBS_H
+#define ISO_CLI_VERBS_H
+
+#include <isoslice/status.h>
+
+#include "arguments.h"
+
+iso_status iso_verb_slice(const iso_arguments *arguments) ISO_MUST_CHECK;
+iso_status iso_verb_contours(const iso_arguments *arguments) ISO_MUST_CHECK;
+iso_status iso_verb_info(const iso_arguments *arguments) ISO_MUST_CHECK;
+iso_status iso_verb_preview(const iso_arguments *arguments) ISO_MUST_CHECK;
+
+/* Print arguments->page to standard output. */
+iso_status iso_page_print(const iso_arguments *arguments) ISO_MUST_CHECK;
+
+/* `file` with its ending replaced; the directory stays. ISO_USAGE if it is longer than size - 1. */
+iso_status iso_replace_ending(char *out, size_t size, const char *file,
+                              const char *ending) ISO_MUST_CHECK;
+
+/* One file, no more and no less. */
+iso_status iso_one_file(const iso_arguments *arguments) ISO_MUST_CHECK;
+
+#endif
