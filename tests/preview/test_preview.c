@@ -114,6 +114,14 @@ static void test_chooses_layers(void) {
     CHECK(access(svg_path, F_OK) != 0);
 }
 
+/* A zero offset from a null pointer, once. */
+static void test_a_layer_with_nothing_in_it(void) {
+    const int32_t empty[] = {1};
+    CHECK_OK(draw(";LAYER_CHANGE\n;LAYER_CHANGE\nM83\nG1 X9 E1\n", empty, 1));
+    CHECK(strstr(picture, "Layer 1</tspan> of 2"));
+    CHECK_EQUAL(0, occurrences("<use "));
+}
+
 /* Without comments: layers by z, widths by the filament in them. */
 static void test_width_from_extrusion(void) {
     double height = 0.25, width = 0.6, pi = acos(-1);
@@ -181,6 +189,7 @@ static void test_survives_every_failing_allocation(void) {
 int main(void) {
     RUN(test_counts_beads_by_role_and_width);
     RUN(test_chooses_layers);
+    RUN(test_a_layer_with_nothing_in_it);
     RUN(test_width_from_extrusion);
     RUN(test_arcs);
     RUN(test_ignores_the_locale);

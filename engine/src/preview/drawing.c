@@ -123,11 +123,17 @@ static bool alike(const iso_preview_stroke *a, const iso_preview_stroke *b) {
     return a->width == b->width && (a->width == 0 || a->role == b->role);
 }
 
+/* NULL where the layer has none */
+static const iso_preview_stroke *strokes_of(const iso_preview_drawing *drawing,
+                                            const iso_preview_panel *panel) {
+    return panel->count > 0 ? drawing->stroke + panel->first : NULL;
+}
+
 /* Each bead is drawn twice, the second time a little narrower and brighter: its edge stays to be
  * seen where it lies against a neighbour. The first stroke has the true width. */
 static void write_beads(iso_output *output, const iso_preview_drawing *drawing, int32_t index) {
     const iso_preview_panel *panel = &drawing->panel[index];
-    const iso_preview_stroke *stroke = drawing->stroke + panel->first;
+    const iso_preview_stroke *stroke = strokes_of(drawing, panel);
     for (int64_t i = 0, next; i < panel->count; i = next) {
         next = i + 1;
         while (next < panel->count && alike(&stroke[i], &stroke[next]))
@@ -147,7 +153,7 @@ static void write_beads(iso_output *output, const iso_preview_drawing *drawing, 
 
 static void write_travels(iso_output *output, const iso_preview_drawing *drawing, int32_t index) {
     const iso_preview_panel *panel = &drawing->panel[index];
-    const iso_preview_stroke *stroke = drawing->stroke + panel->first;
+    const iso_preview_stroke *stroke = strokes_of(drawing, panel);
     iso_output_print(output, "<g class=\"travel\"><path d=\"");
     for (int64_t i = 0, next; i < panel->count; i = next) {
         next = i + 1;
