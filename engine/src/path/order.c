@@ -139,7 +139,44 @@ static iso_status too_many(void) {
     return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
 }
 
+/* Few paths, or groups, are looked through start by start; a grid would cost more to fill. */
+enum { FEW = 8 };
+
+typedef struct start {
+    int64_t distance;
+    int32_t key, vertex;
+} start;
+
+static void look_at_starts(start *best, const ordering *o, int32_t k) {
+    const iso_path *path = &o->in->path[o->key[k].path];
+    const iso_path_vertex *vertex = o->in->vertex + path->first;
+    int32_t step = path->closed || path->count < 2 ? 1 : path->count - 1;
+    for (int32_t i = 0; i < path->count; i += step) {
+        int64_t dx = (int64_t)vertex[i].at.x - o->position.x;
+        int64_t dy = (int64_t)vertex[i].at.y - o->position.y;
+        int64_t distance = dx * dx + dy * dy;
+        if (distance < best->distance)
+            *best = (start){distance, k, i};
+    }
+}
+
+static void order_few(ordering *o, run r) {
+    unsigned done = 0;
+    for (int32_t n = r.begin; n < r.end; n++) {
+        start best = {INT64_MAX, r.begin, 0};
+        for (int32_t k = r.begin; k < r.end; k++)
+            if (!(done >> (k - r.begin) & 1))
+                look_at_starts(&best, o, k);
+        done |= 1u << (best.key - r.begin);
+        emit(o, best.key, best.vertex);
+    }
+}
+
 static iso_status order_rank(ordering *o, run r) {
+    if (r.end - r.begin <= FEW) {
+        order_few(o, r);
+        return ISO_OK;
+    }
     iso_arena_mark mark = iso_arena_get_mark(o->scratch);
     int64_t starts = count_starts(o, r);
     iso_candidate *candidate;
@@ -170,26 +207,45 @@ static iso_status order_group(ordering *o, run group) {
     return ISO_OK;
 }
 
-/* A group is as near as the nearest start of its lowest rank. */
-static iso_status order_groups(ordering *o) {
-    run *group;
-    int32_t groups = 0, n = 0;
-    int64_t starts = 0;
-    ISO_TRY(ISO_PUSH(group, o->scratch, o->count));
-    for (int32_t begin = 0; begin < o->count; begin = group[groups++].end) {
-        group[groups] = (run){begin, end_of_group(o, begin)};
-        starts += count_starts(o, (run){begin, end_of_rank(o, begin, group[groups].end)});
+static run lowest_rank(const ordering *o, run group) {
+    return (run){group.begin, end_of_rank(o, group.begin, group.end)};
+}
+
+static iso_status order_few_groups(ordering *o, const run *group, int32_t groups) {
+    unsigned done = 0;
+    for (int32_t n = 0; n < groups; n++) {
+        start best = {INT64_MAX, 0, 0};
+        int32_t chosen = -1;
+        for (int32_t g = 0; g < groups; g++) {
+            if (done >> g & 1)
+                continue;
+            run r = lowest_rank(o, group[g]);
+            int64_t before = best.distance;
+            for (int32_t k = r.begin; k < r.end && groups - n > 1; k++)
+                look_at_starts(&best, o, k);
+            if (chosen < 0 || best.distance < before)
+                chosen = g;
+        }
+        done |= 1u << chosen;
+        ISO_TRY(order_group(o, group[chosen]));
     }
-    if (groups == 1)
-        return order_group(o, group[0]);
+    return ISO_OK;
+}
+
+/* A group is as near as the nearest start of its lowest rank. */
+static iso_status order_many_groups(ordering *o, const run *group, int32_t groups) {
+    int64_t starts = 0;
+    int32_t n = 0;
+    for (int32_t g = 0; g < groups; g++)
+        starts += count_starts(o, lowest_rank(o, group[g]));
     if (starts > INT32_MAX)
         return too_many();
     iso_candidate *candidate;
     iso_nearest nearest;
     ISO_TRY(ISO_PUSH(candidate, o->scratch, starts));
     for (int32_t g = 0; g < groups; g++) {
-        int32_t end = end_of_rank(o, group[g].begin, group[g].end);
-        for (int32_t k = group[g].begin; k < end; k++)
+        run r = lowest_rank(o, group[g]);
+        for (int32_t k = r.begin; k < r.end; k++)
             n += list_starts(candidate + n, o, k, g);
     }
     ISO_TRY(iso_nearest_build(&nearest, candidate, n, groups, o->scratch));
@@ -200,6 +256,15 @@ static iso_status order_groups(ordering *o) {
         ISO_TRY(order_group(o, group[g]));
     }
     return ISO_OK;
+}
+
+static iso_status order_groups(ordering *o) {
+    run *group;
+    int32_t groups = 0;
+    ISO_TRY(ISO_PUSH(group, o->scratch, o->count));
+    for (int32_t begin = 0; begin < o->count; begin = group[groups++].end)
+        group[groups] = (run){begin, end_of_group(o, begin)};
+    return groups <= FEW ? order_few_groups(o, group, groups) : order_many_groups(o, group, groups);
 }
 
 static iso_status order(ordering *o) {
