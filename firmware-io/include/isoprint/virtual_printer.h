@@ -79,6 +79,7 @@ typedef enum fio_event_code {
     FIO_FAULT_HEATER_LEFT_ON,    /* at the end */
     FIO_WARNING_UNKNOWN_COMMAND, /* the first warning: codes before it are faults */
     FIO_WARNING_RETRACTED,       /* extruding along a path while filament is still retracted */
+    FIO_WARNING_OVERPRIMED,      /* more pushed in place than was retracted, once printing */
     FIO_WARNING_FLOW,            /* more plastic a second than maximum_flow */
     FIO_WARNING_TEXT_CUT,        /* an M command longer than FIO_LINE_MOST bytes; cut */
     FIO_WARNING_FAN_LEFT_ON,     /* at the end */

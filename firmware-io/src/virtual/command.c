@@ -299,7 +299,8 @@ static bool execute_m(fio_virtual_printer *printer, const fio_line *line) {
         say_firmware(printer);
         return true;
     case 118:
-        fio_printer_say(printer, line->arguments + strspn(line->arguments, " "));
+        fio_printer_say(printer,
+                        line->text + line->arguments + strspn(line->text + line->arguments, " "));
         return true;
     case 119:
         fio_printer_say(printer, "Reporting endstop status");

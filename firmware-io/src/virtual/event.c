@@ -21,6 +21,7 @@ static const char *const names[FIO_EVENT_CODES] = {
     [FIO_FAULT_HEATER_LEFT_ON] = "heater_left_on",
     [FIO_WARNING_UNKNOWN_COMMAND] = "unknown_command",
     [FIO_WARNING_RETRACTED] = "retracted",
+    [FIO_WARNING_OVERPRIMED] = "overprimed",
     [FIO_WARNING_FLOW] = "flow",
     [FIO_WARNING_TEXT_CUT] = "text_cut",
     [FIO_WARNING_FAN_LEFT_ON] = "fan_left_on",

@@ -75,7 +75,7 @@ static const char *read_line_number(fio_line *line, const char *p, const char *e
 
 static void read_command(fio_line *line, const char *p, const char *end) {
     line->letter = 0;
-    line->arguments = p;
+    line->arguments = (int)(p - line->text);
     int index = p < end ? letter_index(*p) : -1;
     if (index != 'G' - 'A' && index != 'M' - 'A' && index != 'T' - 'A')
         return;
@@ -91,7 +91,7 @@ static void read_command(fio_line *line, const char *p, const char *end) {
         for (after++; after < end && *after >= '0' && *after <= '9'; after++)
             line->subcode = line->subcode < 1000 ? line->subcode * 10 + (*after - '0') : 1000;
     line->letter = (char)('A' + index);
-    line->arguments = after;
+    line->arguments = (int)(after - line->text);
 }
 
 fio_line_kind fio_line_parse(fio_line *line, const char *bytes, size_t length) {
@@ -126,7 +126,7 @@ fio_line_kind fio_line_parse(fio_line *line, const char *bytes, size_t length) {
 
 void fio_line_words(fio_line *line) {
     const char *end = line->text + line->length;
-    for (const char *p = line->arguments; p < end;) {
+    for (const char *p = line->text + line->arguments; p < end;) {
         if (blank(*p)) {
             p++;
             continue;

@@ -20,10 +20,10 @@ typedef struct fio_line {
     bool cut;        /* longer than FIO_LINE_MOST */
     bool has_number; /* N was there */
     bool has_checksum;
-    int64_t number;        /* of N; -1 */
-    char letter;           /* G, M, T; 0 if there is no such command */
-    int code, subcode;     /* G92.1 is 92 and 1 */
-    const char *arguments; /* in text */
+    int64_t number;    /* of N; -1 */
+    char letter;       /* G, M, T; 0 if there is no such command */
+    int code, subcode; /* G92.1 is 92 and 1 */
+    int arguments;     /* index in text; no pointer, so that a line can be copied */
     /* Words: bit l - 'A'. Values only where `valued` says so. */
     uint32_t seen, valued;
     int stray; /* a byte that belongs to no word, as unsigned char; -1 */

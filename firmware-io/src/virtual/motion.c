@@ -197,6 +197,11 @@ static void count_filament(fio_virtual_printer *printer, double extrusion, bool 
             fio_printer_event_value(printer, FIO_WARNING_RETRACTED, "extruding while ", before,
                                     " mm of filament are retracted");
     }
+    /* Priming before the first path is usual; later it is a blob. */
+    bool printing = statistics->extrusion_length > 0;
+    if (!along_path && printing && extrusion > before + RETRACTED_TOLERANCE)
+        fio_printer_event_value(printer, FIO_WARNING_OVERPRIMED, "pushed in place: ",
+                                extrusion - before, " mm more than was retracted");
     double back = extrusion < before ? extrusion : before;
     statistics->retracted = before - back;
     statistics->unretracted_length += back;
