@@ -121,16 +121,17 @@ static void check_drawing(const iso_region *region, double spacing, double angle
     edge *edges = malloc(((size_t)paths.vertex_count + 1) * sizeof *edges);
     int count = drawn_edges(edges, &paths);
     char *used = calloc((size_t)count + 1, 1);
-    int32_t *member, *level;
+    int32_t *member;
+    iso_cut *room;
     CHECK_OK(ISO_PUSH(member, &scratch, region->count));
-    CHECK_OK(ISO_PUSH(level, &scratch, region->first[region->count]));
+    CHECK_OK(ISO_PUSH(room, &scratch, region->first[region->count]));
     for (int32_t i = 0; i < region->count; i++)
         member[i] = i;
     iso_fill_part whole = {region, member, region->count};
     iso_sweep sweep = iso_sweep_of(angle);
     iso_hatch hatch;
     iso_sweep_repeat(&sweep, (int64_t)(spacing * 256) << 23, 0, -(1LL << 55), 1LL << 55);
-    CHECK_OK(iso_hatch_build(&hatch, &whole, &sweep, level, &scratch));
+    CHECK_OK(iso_hatch_build(&hatch, &whole, &sweep, room, &scratch));
     CHECK_EQUAL(0, missing_segments(&hatch, edges, used, count));
     int stray = 0;
     for (int i = 0; i < count; i++)

@@ -19,9 +19,10 @@ typedef struct trial { /* a hatch and what it lives in */
 /* Hatch the whole region at once: with islands in holes it is a part of more than one piece. */
 static void hatch_region(trial *bench, const iso_region *region, double angle, double spacing,
                          int fit) {
-    int32_t *member, *level;
+    int32_t *member;
+    iso_cut *room;
     CHECK_OK(ISO_PUSH(member, &bench->arena, region->count));
-    CHECK_OK(ISO_PUSH(level, &bench->arena, region->first[region->count]));
+    CHECK_OK(ISO_PUSH(room, &bench->arena, region->first[region->count]));
     for (int32_t i = 0; i < region->count; i++)
         member[i] = i;
     iso_fill_part part = {region, member, region->count};
@@ -32,7 +33,7 @@ static void hatch_region(trial *bench, const iso_region *region, double angle, d
         iso_sweep_fit(&bench->sweep, step, low, high);
     else
         iso_sweep_repeat(&bench->sweep, step, 0, low, high);
-    CHECK_OK(iso_hatch_build(&bench->hatch, &part, &bench->sweep, level, &bench->arena));
+    CHECK_OK(iso_hatch_build(&bench->hatch, &part, &bench->sweep, room, &bench->arena));
 }
 
 static void check_equations(trial *bench) {
@@ -260,6 +261,49 @@ static void test_zigzag_is_a_bijection(void) {
     drop_region(&region);
 }
 
+static int32_t count_orbits(const iso_filling_link *filling, const char *words) {
+    int32_t count = 0;
+    int32_t *orbit = malloc((size_t)filling->link.size * sizeof *orbit);
+    CHECK_OK(iso_multilink_orbits(orbit, &count, &filling->link, words));
+    free(orbit);
+    return count;
+}
+
+/* The library's own validator and orbits, which run the equations as text, agree. */
+static void test_general_validator_and_orbits_agree(void) {
+    for (int i = 0; i < shape_count; i++) {
+        iso_region region = {0};
+        trial bench = {0};
+        iso_filling_link filling;
+        iso_fill_census census;
+        shapes[i].make(&region, 10);
+        hatch_region(&bench, &region, 50, 12345, i % 2);
+        iso_fill_options options = iso_fill_defaults(iso_bead_of(4500, 2000), 1);
+        options.spacing = 12345;
+        options.angle = 50;
+        options.fit = i % 2;
+        CHECK_OK(iso_fill_link_count(&census, &bench.hatch.link, &bench.arena));
+        CHECK_OK(iso_fill_to_link(&filling, &region, &options, &bench.arena));
+        CHECK_OK(iso_multilink_validate(&filling.link));
+        CHECK_EQUAL(4 * census.segments, filling.link.size);
+        CHECK_EQUAL(census.segments, count_orbits(&filling, "r s"));
+        CHECK_EQUAL(census.cells, count_orbits(&filling, "r g"));
+        CHECK_EQUAL(census.contours, count_orbits(&filling, "s g"));
+        CHECK_EQUAL(census.parts, count_orbits(&filling, "r s g"));
+        iso_multilink_free(&filling.link);
+        iso_arena_free(&bench.arena);
+        drop_region(&region);
+    }
+    iso_region none = {0};
+    iso_arena scratch = {0};
+    iso_filling_link filling;
+    iso_fill_options options = iso_fill_defaults(iso_bead_of(4500, 2000), 1);
+    CHECK_OK(iso_fill_to_link(&filling, &none, &options, &scratch));
+    CHECK_EQUAL(0, filling.link.size);
+    iso_multilink_free(&filling.link);
+    iso_arena_free(&scratch);
+}
+
 int main(void) {
     RUN(test_shapes_at_many_angles);
     RUN(test_degenerate_regions);
@@ -269,5 +313,6 @@ int main(void) {
     RUN(test_sweep_directions);
     RUN(test_validator);
     RUN(test_zigzag_is_a_bijection);
+    RUN(test_general_validator_and_orbits_agree);
     return check_verdict();
 }

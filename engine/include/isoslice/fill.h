@@ -8,6 +8,7 @@
 #define ISOSLICE_FILL_H
 
 #include <isoslice/geometry.h>
+#include <isoslice/link.h>
 #include <isoslice/path.h>
 #include <isoslice/planar.h>
 #include <isoslice/status.h>
@@ -34,6 +35,8 @@ typedef struct iso_fill_options {
  * deviation 100 (10 um), shortest half a bead; role solid infill at density 1, else internal. */
 ISO_API iso_fill_options iso_fill_defaults(iso_bead bead, double density);
 
+ISO_API iso_status iso_fill_options_validate(const iso_fill_options *options) ISO_MUST_CHECK;
+
 /* Append the paths that fill `region` (clean contours, outer ones counter-clockwise, with parents)
  * to `out`, part by part. Every piece of a sweep line inside the region is drawn exactly once.
  * Ends lie within a unit of the boundary. O(points + crossings), and sorting on each line.
@@ -41,5 +44,11 @@ ISO_API iso_fill_options iso_fill_defaults(iso_bead bead, double density);
 ISO_API iso_status iso_fill_rectilinear(iso_paths *out, const iso_region *region,
                                         const iso_fill_options *options,
                                         struct iso_arena *scratch) ISO_MUST_CHECK;
+
+/* The contour-filling multi-link of the whole region under one set of lines (fitted to all of it if
+ * so asked): what the paths are walked on, for a look or a file. Free with iso_multilink_free. */
+ISO_API iso_status iso_fill_to_link(iso_filling_link *out, const iso_region *region,
+                                    const iso_fill_options *options,
+                                    struct iso_arena *scratch) ISO_MUST_CHECK;
 
 #endif

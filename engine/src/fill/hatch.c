@@ -16,41 +16,54 @@ void iso_hatch_extent(int64_t *low, int64_t *high, const iso_fill_part *part,
 }
 
 /* How many lines lie below v. The quotient is at most one off before its correction. */
-static int32_t level_of(const iso_sweep *sweep, double per_step, int64_t v) {
+static inline int32_t level_of(const iso_sweep *sweep, double per_step, int64_t v) {
     int64_t above = v - sweep->first;
     if (above < 0)
         return 0;
-    int64_t level = (int64_t)((double)above * per_step);
-    if (level > sweep->count)
-        level = sweep->count;
-    while (level > 0 && (level - 1) * sweep->step > above)
-        level--;
-    while (level < sweep->count && level * sweep->step <= above)
-        level++;
-    return (int32_t)level;
+    int64_t line = (int64_t)((double)above * per_step), rest = above - line * sweep->step;
+    int64_t level = line + 1 - (rest < 0) + (rest >= sweep->step);
+    return level < sweep->count ? (int32_t)level : sweep->count;
 }
 
-/* Levels of the points, and where the crossings of each line begin. An edge adds one to a run of
- * lines, so the ends of the runs are enough. */
-static int64_t count_crossings(int32_t *begin, int32_t *level, const iso_fill_part *part,
-                               const iso_sweep *sweep) {
+/* The edges that cross any line. Most edges of a fine contour don't, and which do is anybody's
+ * guess: so each is written, and every second one is written over. */
+static int32_t find_cuts(iso_cut *cut, int32_t *contour_first, const iso_fill_part *part,
+                         const iso_sweep *sweep) {
     const iso_region *region = part->region;
     double per_step = 1.0 / (double)sweep->step;
-    memset(begin, 0, ((size_t)sweep->count + 1) * sizeof *begin);
+    int32_t count = 0;
     for (int32_t m = 0; m < part->count; m++) {
         int32_t from = region->first[part->member[m]], to = region->first[part->member[m] + 1];
-        for (int32_t i = from; i < to; i++)
-            level[i] = level_of(sweep, per_step, iso_sweep_v(sweep, region->point[i]));
-        for (int32_t i = from, last = to - 1; i < to; last = i++) {
-            int32_t a = level[last], b = level[i];
-            if (a != b) { /* most edges of a fine contour cross no line */
-                begin[a < b ? a : b]++;
-                begin[a < b ? b : a]--;
-            }
+        contour_first[m] = count;
+        if (from == to)
+            continue;
+        iso_cut next = {.from = to - 1};
+        next.level_from = level_of(sweep, per_step, iso_sweep_v(sweep, region->point[to - 1]));
+        for (int32_t i = from; i < to; i++) {
+            next.to = i;
+            next.level_to = level_of(sweep, per_step, iso_sweep_v(sweep, region->point[i]));
+            cut[count] = next;
+            count += next.level_from != next.level_to;
+            next.from = i;
+            next.level_from = next.level_to;
         }
     }
+    contour_first[part->count] = count;
+    return count;
+}
+
+/* Where the crossings of each line begin. A cut adds one to a run of lines, so the ends of the runs
+ * are enough. Returns the number of crossings. */
+static int64_t count_crossings(int32_t *begin, const iso_cut *cut, int32_t cut_count,
+                               int32_t line_count) {
+    memset(begin, 0, ((size_t)line_count + 1) * sizeof *begin);
+    for (int32_t k = 0; k < cut_count; k++) {
+        int32_t a = cut[k].level_from, b = cut[k].level_to;
+        begin[a < b ? a : b]++;
+        begin[a < b ? b : a]--;
+    }
     int64_t total = 0, here = 0;
-    for (int32_t l = 0; l < sweep->count; l++) {
+    for (int32_t l = 0; l < line_count; l++) {
         here += begin[l];
         begin[l] = (int32_t)(total < INT32_MAX ? total : INT32_MAX);
         total += here;
@@ -67,43 +80,37 @@ static int32_t to_nearest(double x) {
 typedef struct hatch_writer {
     iso_hatch *hatch;
     const iso_sweep *sweep;
-    const int32_t *level;
     int32_t *cursor; /* of each line, where its next crossing goes */
     int32_t order;
 } hatch_writer;
 
-/* The crossings of the edge from point i to point j, in the order of the contour. */
-static void cross_edge(hatch_writer *writer, int32_t i, int32_t j) {
+/* The crossings of one edge, in the order of the contour. */
+static void cross_edge(hatch_writer *writer, const iso_cut *cut) {
     const iso_sweep *sweep = writer->sweep;
     const iso_point *point = writer->hatch->part.region->point;
-    iso_point a = point[i], b = point[j];
-    int32_t from = writer->level[i], to = writer->level[j];
-    int up = to > from;
+    iso_point a = point[cut->from], b = point[cut->to];
+    int up = cut->level_to > cut->level_from, down = !up;
     int64_t va = iso_sweep_v(sweep, a);
     double scale = 1.0 / (double)(iso_sweep_v(sweep, b) - va);
     double dx = (double)(b.x - a.x) * scale, dy = (double)(b.y - a.y) * scale;
-    int32_t turn = up ? 1 : -1, line = up ? from : from - 1, last = up ? to : to - 1;
-    for (; line != last; line += turn) {
+    int32_t line = cut->level_from - down, end = cut->level_to - down;
+    for (; line != end; line += up - down) {
         double v = (double)(sweep->first + line * sweep->step - va);
         iso_point at = {to_nearest(a.x + v * dx), to_nearest(a.y + v * dy)};
         writer->hatch->crossing[writer->cursor[line]++] =
-            (iso_crossing){at, 2 * i + up, writer->order++};
+            (iso_crossing){at, 2 * cut->from + up, writer->order++};
     }
 }
 
-static void cross_contours(hatch_writer *writer, int32_t *contour_first) {
-    const iso_fill_part *part = &writer->hatch->part;
-    for (int32_t m = 0; m < part->count; m++) {
-        int32_t from = part->region->first[part->member[m]];
-        int32_t to = part->region->first[part->member[m] + 1];
+/* contour_first: of each contour its first cut, and on return its first crossing. */
+static void cross_contours(hatch_writer *writer, int32_t *contour_first, const iso_cut *cut) {
+    int32_t count = writer->hatch->part.count, k = 0;
+    for (int32_t m = 0; m < count; m++) {
         contour_first[m] = writer->order;
-        for (int32_t i = from; i < to; i++) {
-            int32_t j = i + 1 < to ? i + 1 : from;
-            if (writer->level[i] != writer->level[j])
-                cross_edge(writer, i, j);
-        }
+        for (; k < contour_first[m + 1]; k++)
+            cross_edge(writer, &cut[k]);
     }
-    contour_first[part->count] = writer->order;
+    contour_first[count] = writer->order;
 }
 
 /* B joins neighbours along a contour: it leaves an upward crossing above the line and reaches the
@@ -144,21 +151,22 @@ static iso_status push_hatch(iso_hatch *hatch, int64_t total, iso_arena *scratch
 }
 
 iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const iso_sweep *sweep,
-                           int32_t *level, iso_arena *scratch) {
+                           iso_cut *room, iso_arena *scratch) {
     *hatch = (iso_hatch){.part = *part};
     hatch->link.line_count = sweep->count;
     hatch->link.contour_count = part->count;
     int32_t *cursor, *contour_first, *dart;
     iso_crossing *spare;
     ISO_TRY(ISO_PUSH(cursor, scratch, (int64_t)sweep->count + 1));
-    int64_t total = count_crossings(cursor, level, part, sweep);
+    ISO_TRY(ISO_PUSH(contour_first, scratch, (int64_t)part->count + 1));
+    int32_t cuts = find_cuts(room, contour_first, part, sweep);
+    int64_t total = count_crossings(cursor, room, cuts, sweep->count);
     ISO_TRY(push_hatch(hatch, total, scratch));
     iso_arena_mark mark = iso_arena_get_mark(scratch);
-    ISO_TRY(ISO_PUSH(contour_first, scratch, (int64_t)part->count + 1));
     ISO_TRY(ISO_PUSH(dart, scratch, total));
     ISO_TRY(ISO_PUSH(spare, scratch, total));
-    hatch_writer writer = {hatch, sweep, level, cursor, 0};
-    cross_contours(&writer, contour_first);
+    hatch_writer writer = {hatch, sweep, cursor, 0};
+    cross_contours(&writer, contour_first, room);
     sort_lines(hatch, sweep, cursor, spare);
     for (int32_t c = 0; c < hatch->link.count; c++)
         dart[hatch->crossing[c].order] = 2 * c + (hatch->crossing[c].edge & 1);

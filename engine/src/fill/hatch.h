@@ -27,10 +27,15 @@ typedef struct iso_hatch {
 void iso_hatch_extent(int64_t *low, int64_t *high, const iso_fill_part *part,
                       const iso_sweep *sweep);
 
-/* `level` is room for as many integers as the region has points. Everything is pushed to `scratch`
+/* An edge that crosses lines: its points, and how many lines lie below each. */
+typedef struct iso_cut {
+    int32_t from, to, level_from, level_to;
+} iso_cut;
+
+/* `room` is for as many cuts as the part has points. What the hatch holds is pushed to `scratch`
  * and lives until the caller pops it. */
 iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const iso_sweep *sweep,
-                           int32_t *level, iso_arena *scratch) ISO_MUST_CHECK;
+                           iso_cut *room, iso_arena *scratch) ISO_MUST_CHECK;
 
 /* The points of the boundary's arc from `dart` to its other end, both ends left out, to `point`
  * (room for the part's points). Returns how many, or -1 if the arc is longer than `longest`. */

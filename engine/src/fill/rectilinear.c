@@ -4,24 +4,6 @@
 
 #include "fill/hatch.h"
 
-enum { SPACING_FRACTION = 256, LINK_SPACINGS = 5, DEVIATION = 100 };
-
-iso_fill_options iso_fill_defaults(iso_bead bead, double density) {
-    int solid = density >= 1;
-    double spacing = solid ? bead.spacing : bead.spacing / density;
-    double link = spacing * LINK_SPACINGS;
-    return (iso_fill_options){
-        .spacing = spacing,
-        .fit = solid,
-        .width = bead.width,
-        .area = bead.area,
-        .link_max = link < ISO_COORDINATE_MAX ? (int32_t)link : ISO_COORDINATE_MAX,
-        .deviation = DEVIATION,
-        .shortest = bead.width / 2,
-        .like = {.role = solid ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL},
-    };
-}
-
 /* A run of the zigzag while it grows. */
 typedef struct zigzag {
     const iso_hatch *hatch;
@@ -151,38 +133,40 @@ static iso_status draw_part(iso_paths *out, zigzag *run, int32_t width, int32_t 
     return ISO_OK;
 }
 
-/* Fitted lines fill the part's extent and half a spacing on both sides: each of them takes an equal
- * share of that. */
-static double fitted_share(const iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high) {
-    return (double)(high - low + spacing) / ((double)sweep->count * (double)spacing);
+#ifndef NDEBUG
+static iso_status check_hatch(const iso_hatch *hatch, iso_arena *scratch) {
+    ISO_TRY(iso_fill_link_validate(&hatch->link));
+    iso_fill_census census;
+    ISO_TRY(iso_fill_link_count(&census, &hatch->link, scratch));
+    if (!iso_fill_census_is_plane(&census))
+        return iso_fail(ISO_BUG,
+                        "fill: contour %d and its holes are no region: %d cells, %d "
+                        "segments, %d parts, %d contours",
+                        hatch->part.member[0], census.cells, census.segments, census.parts,
+                        census.contours);
+    return ISO_OK;
 }
+#endif
 
 static iso_status fill_part(iso_paths *out, const iso_fill_part *part, iso_sweep sweep,
-                            const iso_fill_options *options, int32_t *level, iso_arena *scratch) {
-    /* from 1/256 of a unit to v */
-    int64_t scale = ISO_SWEEP_ONE / SPACING_FRACTION;
-    int64_t spacing = (int64_t)(options->spacing * SPACING_FRACTION + 0.5) * scale;
-    int64_t phase = (int64_t)floor(options->phase * SPACING_FRACTION + 0.5) * scale;
+                            const iso_fill_options *options, iso_cut *room, iso_arena *scratch) {
     int64_t low, high;
-    double share = 1;
     iso_hatch_extent(&low, &high, part, &sweep);
     if (low >= high)
         return ISO_OK;
-    if (options->fit) {
-        iso_sweep_fit(&sweep, spacing, low, high);
-        share = fitted_share(&sweep, spacing, low, high);
-    } else {
-        iso_sweep_repeat(&sweep, spacing, phase, low, high);
-    }
+    double share = iso_sweep_place(&sweep, options, low, high);
     if (sweep.count <= 0)
         return ISO_OK;
     iso_hatch hatch;
-    ISO_TRY(iso_hatch_build(&hatch, part, &sweep, level, scratch));
+    ISO_TRY(iso_hatch_build(&hatch, part, &sweep, room, scratch));
     if (hatch.link.count && (hatch.crossing[0].edge & 1))
         return iso_fail(ISO_USAGE,
                         "fill: contour %d runs clockwise but lies in no other; clean the "
                         "region first",
                         part->member[0]);
+#ifndef NDEBUG
+    ISO_TRY(check_hatch(&hatch, scratch));
+#endif
     zigzag run = {.hatch = &hatch, .options = options};
     int64_t points = 2 + hatch.link.count;
     for (int32_t m = 0; m < part->count; m++)
@@ -221,11 +205,12 @@ static void sort_members(int32_t *member, int32_t *first, const int32_t *part, i
 
 static iso_status fill_region(iso_paths *out, const iso_region *region,
                               const iso_fill_options *options, iso_arena *scratch) {
-    int32_t *outer, *member, *first, *level, count = region->count;
+    int32_t *outer, *member, *first, count = region->count;
+    iso_cut *room;
     ISO_TRY(ISO_PUSH(outer, scratch, count));
     ISO_TRY(ISO_PUSH(member, scratch, count));
     ISO_TRY(ISO_PUSH(first, scratch, (int64_t)count + 1));
-    ISO_TRY(ISO_PUSH(level, scratch, region->first[count]));
+    ISO_TRY(ISO_PUSH(room, scratch, region->first[count]));
     find_parts(outer, region);
     sort_members(member, first, outer, count);
     iso_sweep sweep = iso_sweep_of(options->angle);
@@ -234,32 +219,15 @@ static iso_status fill_region(iso_paths *out, const iso_region *region,
         if (part.count == 0)
             continue;
         iso_arena_mark mark = iso_arena_get_mark(scratch);
-        ISO_TRY(fill_part(out, &part, sweep, options, level, scratch));
+        ISO_TRY(fill_part(out, &part, sweep, options, room, scratch));
         iso_arena_pop(scratch, mark);
     }
     return ISO_OK;
 }
 
-static iso_status check_options(const iso_fill_options *options) {
-    if (!(options->spacing >= ISO_FILL_SPACING_MIN && options->spacing <= 4.0 * ISO_COORDINATE_MAX))
-        return iso_fail(ISO_USAGE, "fill: a spacing of %g mm is out of range (%g to %g mm)",
-                        options->spacing / ISO_UNITS_PER_MM, iso_mm(ISO_FILL_SPACING_MIN),
-                        iso_mm(4 * ISO_COORDINATE_MAX));
-    if (options->width < 0 || options->width > ISO_COORDINATE_MAX || options->area < 0 ||
-        options->area > 1 << 30)
-        return iso_fail(ISO_USAGE, "fill: a bead %d units wide with an area of %d is out of range",
-                        options->width, options->area);
-    if (!(fabs(options->angle) <= 1e6))
-        return iso_fail(ISO_USAGE, "fill: an angle of %g degrees is out of range", options->angle);
-    if (!(fabs(options->phase) <= 4.0 * ISO_COORDINATE_MAX))
-        return iso_fail(ISO_USAGE, "fill: a phase of %g mm is out of range",
-                        options->phase / ISO_UNITS_PER_MM);
-    return ISO_OK;
-}
-
 iso_status iso_fill_rectilinear(iso_paths *out, const iso_region *region,
                                 const iso_fill_options *options, iso_arena *scratch) {
-    ISO_TRY(check_options(options));
+    ISO_TRY(iso_fill_options_validate(options));
     if (region->count == 0)
         return ISO_OK;
     int32_t count = out->count, vertex_count = out->vertex_count;

@@ -69,3 +69,17 @@ void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high)
         sweep->step = (extent - 2 * inset) / gaps & ~(int64_t)1;
     }
 }
+
+double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options, int64_t low,
+                       int64_t high) {
+    enum { FRACTION = 256 }; /* options are kept to this part of a unit */
+    int64_t scale = ISO_SWEEP_ONE / FRACTION;
+    int64_t spacing = (int64_t)(options->spacing * FRACTION + 0.5) * scale;
+    if (!options->fit) {
+        int64_t phase = (int64_t)floor(options->phase * FRACTION + 0.5) * scale;
+        iso_sweep_repeat(sweep, spacing, phase, low, high);
+        return 1;
+    }
+    iso_sweep_fit(sweep, spacing, low, high);
+    return (double)(high - low + spacing) / ((double)sweep->count * (double)spacing);
+}

@@ -7,6 +7,7 @@
 #ifndef ISO_FILL_SWEEP_H
 #define ISO_FILL_SWEEP_H
 
+#include <isoslice/fill.h>
 #include <isoslice/geometry.h>
 
 #define ISO_SWEEP_ONE ((int64_t)1 << 31) /* one unit of length in v */
@@ -32,5 +33,11 @@ void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, int64_t 
 /* Low < high. Lines about `spacing` apart, the first and the last on the edges; one in the middle
  * if they are too near. */
 void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high);
+
+/* One or the other, as the options have it. Returns the share of a line's usual volume that each of
+ * these lines draws: fitted lines fill their extent and half a spacing on both sides, in equal
+ * parts; others draw what is usual. */
+double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options, int64_t low,
+                       int64_t high);
 
 #endif
