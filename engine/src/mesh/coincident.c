@@ -1,12 +1,17 @@
 #include "mesh/repair.h"
 
 #include "base/memory.h"
+#include "mesh/union_find.h"
 
 /* Triangles on the same three vertices form a group, led by the first of them. Of p triangles that
- * turn one way and n the other, min(p, n) pairs enclose nothing and cancel; of what is left, one is
- * enough. */
+ * turn one way and n the other, min(p, n) pairs enclose nothing and cancel, which leaves every edge
+ * as balanced as it was. One of the rest is enough, if the further ones, taken together with their
+ * neighbours of the kind, can go without unbalancing their edges: a shell that was exported twice
+ * can, but where two sheets of a surface run through the same triangle both are needed. */
 typedef struct group {
     int32_t same, other; /* as the leader turns, and the other way */
+    int32_t kept;
+    bool odd; /* the leader's */
 } group;
 
 typedef struct key {
@@ -46,7 +51,7 @@ static void find_groups(group *groups, int32_t *leader, int32_t *table, uint64_t
         if (table[slot] < 0) {
             table[slot] = t;
             other = k;
-            groups[t] = (group){0, 0};
+            groups[t] = (group){.odd = k.odd};
         }
         leader[t] = table[slot];
         if (other.odd == k.odd)
@@ -56,26 +61,74 @@ static void find_groups(group *groups, int32_t *leader, int32_t *table, uint64_t
     }
 }
 
-/* Keep the first triangle of a group that turns as its majority does. */
-static void drop(iso_mesh *mesh, group *groups, const int32_t *leader) {
-    int32_t kept = 0;
+/* Drop the pairs; extra[t] marks what turns as an earlier triangle of its group does. */
+static int32_t cancel(iso_mesh *mesh, bool *extra, group *groups, const int32_t *leader) {
+    int32_t kept = 0, extras = 0;
     for (int32_t t = 0; t < mesh->triangle_count; t++) {
-        if (leader[t] != t)
+        group *g = &groups[leader[t]];
+        int32_t left = g->same > g->other ? g->same - g->other : g->other - g->same;
+        bool majority = (key_of(mesh->origin + 3 * t).odd == g->odd) == (g->same > g->other);
+        if (!majority || g->kept == left)
             continue;
-        int32_t same = groups[t].same, other = groups[t].other;
-        int32_t pairs = same < other ? same : other, left = same + other - 2 * pairs;
-        mesh->defects.cancelled += 2 * pairs;
-        if (left == 0)
-            continue;
-        mesh->defects.duplicate += left - 1;
-        int32_t v[3];
-        memcpy(v, mesh->origin + 3 * t, sizeof v);
-        int32_t *to = mesh->origin + 3 * kept++;
-        to[0] = v[0];
-        to[1] = v[same > other ? 1 : 2];
-        to[2] = v[same > other ? 2 : 1];
+        extra[kept] = g->kept++ > 0;
+        extras += extra[kept];
+        memmove(mesh->origin + 3 * kept++, mesh->origin + 3 * t, 3 * sizeof *mesh->origin);
     }
+    mesh->defects.cancelled += mesh->triangle_count - kept;
     mesh->triangle_count = kept;
+    return extras;
+}
+
+static int32_t distance(int32_t a) {
+    return a < 0 ? -a : a;
+}
+
+/* Extras that share an edge go or stay together: above[] joins them into clusters, and gain[root]
+ * tells by how much the edges' balance improves without them. */
+static void weigh(int32_t *above, int64_t *gain, const iso_mesh *mesh, const bool *extra,
+                  const iso_mesh_edges *edges) {
+    for (int32_t t = 0; t < mesh->triangle_count; t++)
+        above[t] = t, gain[t] = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t e = 0; e < edges->count; e++) {
+            const int32_t *dart = edges->dart + edges->first[e];
+            int32_t count = edges->first[e + 1] - edges->first[e], balance = 0, without = 0;
+            int32_t cluster = -1;
+            for (int32_t i = 0; i < count; i++) {
+                int32_t t = dart[i] / 3;
+                int32_t sign = mesh->origin[dart[i]] == mesh->origin[dart[0]] ? 1 : -1;
+                balance += sign;
+                without += extra[t] ? 0 : sign;
+                if (!extra[t])
+                    continue;
+                int32_t root = iso_root_of(above, t);
+                cluster = cluster < 0 ? root : iso_join_roots(above, cluster, root);
+            }
+            if (pass == 1 && cluster >= 0)
+                gain[cluster] += distance(balance) - distance(without);
+        }
+}
+
+static iso_status drop_extras(iso_mesh *mesh, const bool *extra) {
+    iso_mesh_edges edges;
+    int32_t *above = NULL, kept = 0;
+    int64_t *gain = NULL;
+    ISO_TRY(iso_mesh_edges_new(&edges, mesh));
+    iso_status status = ISO_ALLOCATE(above, mesh->triangle_count);
+    if (status == ISO_OK)
+        status = ISO_ALLOCATE(gain, mesh->triangle_count);
+    if (status == ISO_OK) {
+        weigh(above, gain, mesh, extra, &edges);
+        for (int32_t t = 0; t < mesh->triangle_count; t++)
+            if (!extra[t] || gain[iso_root_of(above, t)] < 0)
+                memmove(mesh->origin + 3 * kept++, mesh->origin + 3 * t, 3 * sizeof *mesh->origin);
+        mesh->defects.duplicate += mesh->triangle_count - kept;
+        mesh->triangle_count = kept;
+    }
+    iso_mesh_edges_free(&edges);
+    iso_release(above);
+    iso_release(gain);
+    return status;
 }
 
 iso_status iso_mesh_drop_coincident(iso_mesh *mesh) {
@@ -83,19 +136,25 @@ iso_status iso_mesh_drop_coincident(iso_mesh *mesh) {
     while (size < count + count / 2)
         size *= 2;
     group *groups = NULL;
-    int32_t *leader = NULL, *table = NULL;
+    int32_t *leader = NULL, *table = NULL, extras = 0;
+    bool *extra = NULL;
     iso_status status = ISO_ALLOCATE(groups, count);
     if (status == ISO_OK)
         status = ISO_ALLOCATE(leader, count);
+    if (status == ISO_OK)
+        status = ISO_ALLOCATE(extra, count);
     if (status == ISO_OK)
         status = ISO_ALLOCATE(table, size);
     if (status == ISO_OK) {
         memset(table, 0xff, (size_t)size * sizeof *table);
         find_groups(groups, leader, table, (uint64_t)size - 1, mesh);
-        drop(mesh, groups, leader);
+        extras = cancel(mesh, extra, groups, leader);
     }
     iso_release(groups);
     iso_release(leader);
     iso_release(table);
+    if (status == ISO_OK && extras > 0)
+        status = drop_extras(mesh, extra);
+    iso_release(extra);
     return status;
 }

@@ -68,6 +68,8 @@ static float divide(big *above, big *below, bool more) {
         big_double(&twice);
         exponent++;
     }
+    if (exponent > 127)
+        return float_of(0x7f800000u);
     while (big_compare(above, below) < 0 && exponent > -149) {
         big_double(above);
         exponent--;
@@ -103,8 +105,7 @@ static float exact(const decimal *d) {
         big_multiply_add(&above, 10, 0);
     for (int64_t e = d->exponent; e < 0; e++)
         big_multiply_add(&below, 10, 0);
-    float value = divide(&above, &below, d->more);
-    return value <= 3.402823466e38f ? value : float_of(0x7f800000u);
+    return divide(&above, &below, d->more);
 }
 
 static const double power_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,

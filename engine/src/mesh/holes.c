@@ -1,6 +1,7 @@
 #include "mesh/repair.h"
 
 #include "base/memory.h"
+#include "mesh/union_find.h"
 
 /* A boundary loop, in the direction in which its cap's darts run: against the open darts.
  *
@@ -117,6 +118,22 @@ static double cap_area(const closer *c, int32_t loop) {
     return sum;
 }
 
+/* Triangles that lost all their neighbours still hang on by their corners: for the share of the
+ * caps, shells that have a vertex in common are one. */
+static void join_at_vertices(closer *c, int32_t *part, int32_t shells) {
+    const iso_mesh *mesh = c->mesh;
+    for (int32_t i = 0; i < shells; i++)
+        part[i] = i;
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        c->place[v] = -1;
+    for (int32_t a = 0; a < 3 * mesh->triangle_count; a++) {
+        int32_t *owner = &c->place[mesh->origin[a]], shell = iso_root_of(part, c->shell[a / 3]);
+        *owner = *owner < 0 ? shell : iso_join_roots(part, iso_root_of(part, *owner), shell);
+    }
+    for (int32_t t = 0; t < mesh->triangle_count; t++)
+        c->shell[t] = iso_root_of(part, c->shell[t]);
+}
+
 typedef struct share {
     double area, caps;
     int64_t open;
@@ -213,12 +230,15 @@ static iso_status close_loops(closer *c) {
 }
 
 static iso_status close_all(closer *c, share **shares) {
-    int32_t shells;
+    int32_t shells, *part;
     ISO_TRY(ISO_ALLOCATE(c->place, c->mesh->vertex_count));
     ISO_TRY(ISO_ALLOCATE(c->path, c->open));
     ISO_TRY(ISO_ALLOCATE(c->dart, c->open));
     ISO_TRY(ISO_ALLOCATE(c->first, c->open + 1));
     ISO_TRY(iso_mesh_find_shells(&c->shell, &shells, c->mesh));
+    ISO_TRY(ISO_ALLOCATE(part, shells));
+    join_at_vertices(c, part, shells);
+    iso_release(part);
     find_loops(c);
     ISO_TRY(ISO_ALLOCATE(c->apex, c->loops));
     for (int32_t loop = 0; loop < c->loops; loop++)

@@ -185,8 +185,11 @@ static void judge(bool *turned, const nesting *n, const double *volume) {
                 parent = around->around;
         }
         bool along = parent >= 0 && n->depth[parent] < n->depth[inner] && turned[parent];
-        bool negative = along ? volume[inner] > 0 : volume[inner] < 0;
-        turned[inner] = along ^ (negative && material <= 0);
+        bool positive = volume[inner] > 0, negative = volume[inner] < 0;
+        if (along && material > 0)
+            turned[inner] = positive;
+        else
+            turned[inner] = negative && material <= 0;
     }
 }
 

@@ -9,6 +9,7 @@ typedef struct grid {
     int32_t *slot; /* [size] first kept vertex with that hash, or -1 */
     int32_t *next; /* [vertex] */
     uint64_t mask;
+    int32_t *beside[2]; /* [vertex] neighbours along an open edge: those are no seam */
 } grid;
 
 typedef struct cell {
@@ -32,13 +33,16 @@ static uint64_t hash_of(cell c) {
     return hash ^ hash >> 32;
 }
 
-static int32_t nearest(const grid *g, const iso_mesh *mesh, iso_vec3 p) {
+static int32_t nearest(const grid *g, const iso_mesh *mesh, int32_t vertex) {
+    iso_vec3 p = mesh->position[vertex];
     cell c = cell_of(p);
     int32_t best = -1;
     double least = ISO_MESH_SEAM * ISO_MESH_SEAM;
     for (int i = 0; i < 27; i++) {
         cell near = {c.x + i % 3 - 1, c.y + i / 3 % 3 - 1, c.z + i / 9 - 1};
         for (int32_t v = g->slot[hash_of(near) & g->mask]; v >= 0; v = g->next[v]) {
+            if (v == g->beside[0][vertex] || v == g->beside[1][vertex])
+                continue;
             iso_vec3 q = mesh->position[v];
             double x = q.x - p.x, y = q.y - p.y, z = q.z - p.z, d = x * x + y * y + z * z;
             if (d < least || (d == least && (best < 0 || v < best))) {
@@ -51,7 +55,7 @@ static int32_t nearest(const grid *g, const iso_mesh *mesh, iso_vec3 p) {
 }
 
 /* name[v] = -1 where an open edge ends, v elsewhere. */
-static int64_t mark_open(int32_t *name, const iso_mesh *mesh) {
+static int64_t mark_open(int32_t *name, grid *g, const iso_mesh *mesh) {
     int64_t marked = 0;
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         name[v] = v;
@@ -62,13 +66,14 @@ static int64_t mark_open(int32_t *name, const iso_mesh *mesh) {
         for (int k = 0; k < 2; k++) {
             marked += name[end[k]] >= 0;
             name[end[k]] = -1;
+            g->beside[k][end[k]] = end[1 - k];
         }
     }
     return marked;
 }
 
 static iso_status merge(int64_t *merged, iso_mesh *mesh, int32_t *name, grid *g) {
-    int64_t marked = mark_open(name, mesh), size = 16;
+    int64_t marked = mark_open(name, g, mesh), size = 16;
     while (size < 2 * marked)
         size *= 2;
     ISO_TRY(ISO_ALLOCATE(g->slot, size));
@@ -77,7 +82,7 @@ static iso_status merge(int64_t *merged, iso_mesh *mesh, int32_t *name, grid *g)
     for (int32_t v = 0; v < mesh->vertex_count; v++) {
         if (name[v] >= 0)
             continue;
-        int32_t near = nearest(g, mesh, mesh->position[v]);
+        int32_t near = nearest(g, mesh, v);
         if (near >= 0) {
             name[v] = near;
             ++*merged;
@@ -101,10 +106,14 @@ iso_status iso_mesh_weld_seams(int64_t *merged, iso_mesh *mesh) {
     iso_status status = ISO_ALLOCATE(name, mesh->vertex_count);
     if (status == ISO_OK)
         status = ISO_ALLOCATE(g.next, mesh->vertex_count);
+    for (int k = 0; k < 2 && status == ISO_OK; k++)
+        status = ISO_ALLOCATE(g.beside[k], mesh->vertex_count);
     if (status == ISO_OK)
         status = merge(merged, mesh, name, &g);
     iso_release(name);
     iso_release(g.slot);
     iso_release(g.next);
+    iso_release(g.beside[0]);
+    iso_release(g.beside[1]);
     return status;
 }

@@ -2,15 +2,7 @@
 
 #include "base/memory.h"
 #include "mesh/nesting.h"
-
-/* Union-find on triangles; the root of a shell is its first triangle. */
-static int32_t root_of(int32_t *above, int32_t t) {
-    while (above[t] != t) {
-        above[t] = above[above[t]];
-        t = above[t];
-    }
-    return t;
-}
+#include "mesh/union_find.h"
 
 iso_status iso_mesh_find_shells(int32_t **shell, int32_t *count, const iso_mesh *mesh) {
     int32_t *above;
@@ -21,11 +13,7 @@ iso_status iso_mesh_find_shells(int32_t **shell, int32_t *count, const iso_mesh 
             int32_t b = mesh->opposite[a];
             if (b < 0 || b / 3 >= t)
                 continue;
-            int32_t other = root_of(above, b / 3);
-            if (other < root)
-                root = above[root] = other;
-            else
-                above[other] = root;
+            root = iso_join_roots(above, root, iso_root_of(above, b / 3));
         }
     }
     *count = 0;
