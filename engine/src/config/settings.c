@@ -40,9 +40,7 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
     iso_role role = solid ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL;
     iso_bead bead = bead_of(options, role, first, height);
     double overlap = iso_options_infill_overlap(options);
-    s->wall.fill_inset = bead.spacing / 2;
-    if (!solid)
-        s->wall.fill_inset -= iso_units(overlap);
+    s->wall.fill_inset = bead.spacing / 2 - iso_units(overlap);
     s->fill_count = density <= 0 ? 0 : grid ? 2 : 1;
     for (int32_t pass = 0; pass < s->fill_count; pass++) {
         iso_fill_options *fill = &s->fill[pass];
@@ -118,6 +116,7 @@ iso_gcode_options settings_of_gcode(const iso_options *options, const char *star
     g.start_gcode = start;
     g.end_gcode = end;
     g.generator = "isoslice " ISO_VERSION;
+    g.remaining_times = options->remaining_times;
     g.timestamp = timestamp;
     return g;
 }

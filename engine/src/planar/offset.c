@@ -32,6 +32,7 @@ typedef struct iso_rawing {
     int64_t count;   /* points written in raw->point */
     double distance; /* > 0 */
     double sign;     /* 1 grows, -1 shrinks */
+    double tip_max;  /* a mitre no longer than this beyond the distance passes for any join */
     const iso_offset_options *options;
 } iso_rawing;
 
@@ -101,8 +102,8 @@ static iso_status put_square(iso_rawing *r, iso_point corner, const iso_side *in
 static iso_status put_opening(iso_rawing *r, iso_point corner, const iso_side *in,
                               const iso_side *out, double cosine) {
     double mitre = sqrt(2 / (1 + cosine)); /* tip's distance, in distances */
-    bool tip = r->distance * (mitre - 1) <= 0.5 ||
-               (r->options->join == ISO_JOIN_MITRE && mitre <= r->options->mitre_limit);
+    bool tip = r->options->join == ISO_JOIN_MITRE ? mitre <= r->options->mitre_limit
+                                                  : r->distance * (mitre - 1) <= r->tip_max;
     if (cosine > -0.999 && tip) {
         iso_vec2 sum = {in->shift.x + out->shift.x, in->shift.y + out->shift.y};
         return put(r, corner, sum, r->distance / (1 + cosine));
@@ -162,6 +163,7 @@ static iso_status draw_raw(const iso_region *in, const iso_offset_options *optio
     iso_rawing r = {.raw = raw, .options = options};
     r.sign = options->distance < 0 ? -1 : 1;
     r.distance = r.sign * (double)options->distance;
+    r.tip_max = options->join == ISO_JOIN_ROUND ? options->arc_tolerance : 0.5;
     iso_region_clear(raw);
     ISO_TRY(region_reserve(raw, in->count, in->count ? 2 * in->first[in->count] : 0));
     for (int32_t c = 0; c < in->count; c++) {
