@@ -134,8 +134,10 @@ static void test_activities(void) {
     CHECK_NEAR(2. / 40 + 40. / 1500, statistics->time[FIO_RETRACTING], 1e-9);
     CHECK_NEAR(3, statistics->time[FIO_DWELLING], 1e-9);
     double sum = 0;
-    for (int i = 0; i < FIO_ACTIVITIES; i++)
+    for (int i = 0; i < FIO_ACTIVITIES; i++) {
         sum += statistics->time[i];
+        CHECK(strlen(fio_activity_name(i)) > 5);
+    }
     CHECK_NEAR(sum, statistics->total_time, 1e-9);
     CHECK_NEAR(sum, rig_state(printer).time, 1e-9);
     fio_virtual_printer_free(printer);

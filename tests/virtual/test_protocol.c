@@ -65,10 +65,15 @@ static void test_checksums(void) {
            "Error:Line Number is not Last Line Number+1, Last Line: 2\nResend: 3\nok\n");
     expect(printer, rig_numbered(700, "M110 N41"), FIO_OK, "ok\n"); /* its second N wins */
     expect(printer, rig_numbered(42, "M117 a*b"), FIO_OK, "ok\n");  /* the last * counts */
-    expect(printer, "G4 S1*7", FIO_OK, "ok\n");                     /* no N: not checked */
-    CHECK_EQUAL(4, rig_statistics(printer)->rejected_lines);
+    expect(printer, "G1 X12*7", FIO_OK, "ok\n");                    /* no N: cut off, not checked */
+    expect(printer, rig_numbered(43, "G1 X14 "), FIO_OK, "ok\n");
+    expect(printer, "N44 G1 X15*", FIO_REJECTED,
+           "Error:No Checksum with line number, Last Line: 43\nResend: 44\nok\n");
+    expect(printer, rig_numbered(44, ""), FIO_OK, "ok\n");
+    CHECK_NEAR(14, rig_state(printer).position[0], 0);
+    CHECK_EQUAL(5, rig_statistics(printer)->rejected_lines);
     CHECK_EQUAL(2, rig_statistics(printer)->duplicate_lines);
-    CHECK_EQUAL(42, rig_state(printer).line_number);
+    CHECK_EQUAL(44, rig_state(printer).line_number);
     CHECK_EQUAL(FIO_OK, fio_virtual_printer_finish(printer)); /* all was sent again */
     fio_virtual_printer_free(printer);
 }

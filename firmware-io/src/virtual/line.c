@@ -40,25 +40,25 @@ static size_t strip(fio_line *line, const char *bytes, size_t length) {
     return kept;
 }
 
-/* Cut "*checksum" off; false if it is wrong or a numbered line has none. */
+/* Cut "*checksum" off. False if the line is numbered and its checksum is wrong or missing; Marlin
+ * does not look at the checksums of other lines. */
 static bool check(fio_line *line) {
-    const char *star = NULL;
-    for (int i = line->length; i-- > 0 && !star;)
-        if (line->text[i] == '*')
-            star = line->text + i;
+    const char *star = NULL, *end = line->text + line->length;
+    for (const char *p = end; p > line->text && !star;)
+        if (*--p == '*')
+            star = p;
     if (!star)
         return !line->has_number;
-    if (!line->has_number)
-        return true; /* Marlin looks at checksums of numbered lines only */
+    double given = -1;
+    const char *start = skip_blanks(star + 1, end), *after = fio_number_read(&given, start, end);
+    line->has_checksum = after > start && skip_blanks(after, end) == end;
+    if (!line->has_checksum)
+        return !line->has_number;
     unsigned sum = 0;
     for (const char *p = line->text; p < star; p++)
         sum ^= (unsigned char)*p;
-    double given = -1;
-    const char *end = line->text + line->length, *start = skip_blanks(star + 1, end);
-    const char *after = fio_number_read(&given, start, end);
-    line->has_checksum = after > start;
     line->length = (int)(star - line->text);
-    return after > start && skip_blanks(after, end) == end && given == (double)sum;
+    return !line->has_number || given == (double)sum;
 }
 
 static const char *read_line_number(fio_line *line, const char *p, const char *end) {
@@ -111,7 +111,7 @@ fio_line_kind fio_line_parse(fio_line *line, const char *bytes, size_t length) {
     if (line->length == 0)
         return FIO_LINE_EMPTY;
     const char *start = read_line_number(line, line->text, line->text + line->length);
-    if (line->has_number && !check(line))
+    if (!check(line))
         return FIO_LINE_DAMAGED;
     const char *end = line->text + line->length;
     start = skip_blanks(start, end);
