@@ -200,8 +200,9 @@ static void count_filament(fio_virtual_printer *printer, double extrusion, bool 
     /* Priming before the first path is usual; later it is a blob. */
     bool printing = statistics->extrusion_length > 0;
     if (!along_path && printing && extrusion > before + RETRACTED_TOLERANCE)
-        fio_printer_event_value(printer, FIO_WARNING_OVERPRIMED, "pushed in place: ",
-                                extrusion - before, " mm more than was retracted");
+        fio_printer_event_value(printer, FIO_WARNING_OVERPRIMED,
+                                "pushed in place: ", extrusion - before,
+                                " mm more than was retracted");
     double back = extrusion < before ? extrusion : before;
     statistics->retracted = before - back;
     statistics->unretracted_length += back;
