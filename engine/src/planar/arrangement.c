@@ -16,8 +16,6 @@ static bool stop_less(const iso_stop *a, const iso_stop *b) {
 }
 ISO_SORT(sort_stops, iso_stop, stop_less)
 
-enum { EDGE_VISITED = 8 };
-
 /* Contours without a shared vertex stop once, at their lexicographic least point. */
 static int32_t mark_lonely_contours(iso_edges *edges) {
     int32_t lonely = 0;
@@ -60,8 +58,8 @@ static iso_status collect_stops(iso_stop **out, int32_t *count, const iso_edges 
 /* One chain a stop: follow the contour to the next one. */
 static int32_t trace_chain(iso_arrangement *a, int32_t c, const iso_edges *edges, int32_t slot) {
     int32_t n = a->chain_first[c], lowest = n;
-    a->multiplicity[c] = (iso_winding){{0, 0}};
-    a->multiplicity[c].of[(edges->flags[slot] & EDGE_OPERAND) != 0] = 1;
+    a->multiplicity[c] = (iso_winding){{0}};
+    a->multiplicity[c].of[(edges->flags[slot] & EDGE_OPERAND) >> EDGE_OPERAND_SHIFT] = 1;
     a->point[n++] = edges->from[slot];
     int32_t at = slot;
     do {
@@ -121,7 +119,10 @@ static bool ray_less(const iso_ray *a, const iso_ray *b) {
 ISO_SORT(sort_rays, iso_ray, ray_less)
 
 static bool is_dead(iso_winding multiplicity) {
-    return multiplicity.of[0] == 0 && multiplicity.of[1] == 0;
+    int32_t any = 0;
+    for (int k = 0; k < OPERANDS_MAX; k++)
+        any |= multiplicity.of[k];
+    return any == 0;
 }
 
 /* Darts of one direction from one junction are the same single edge (else the farther would have
@@ -135,9 +136,9 @@ static void merge_coincident(iso_arrangement *a, const iso_ray *ray, int32_t cou
         for (int32_t k = i + 1; k < end; k++) {
             iso_winding *other = &a->multiplicity[ray[k].dart >> 1];
             int sign = (ray[k].dart ^ ray[i].dart) & 1 ? -1 : 1;
-            sum->of[0] += sign * other->of[0];
-            sum->of[1] += sign * other->of[1];
-            *other = (iso_winding){{0, 0}};
+            for (int o = 0; o < OPERANDS_MAX; o++)
+                sum->of[o] += sign * other->of[o];
+            *other = (iso_winding){{0}};
         }
     }
 }
@@ -232,7 +233,7 @@ iso_status arrangement_validate(const iso_arrangement *a) {
             return iso_fail(ISO_BUG, "arrangement: g beta = g fails at dart %d", (int)d);
         iso_winding left = a->winding[a->face[d]], right = a->winding[a->face[d ^ 1]];
         int sign = d & 1 ? -1 : 1;
-        for (int k = 0; k < 2; k++)
+        for (int k = 0; k < OPERANDS_MAX; k++)
             if (left.of[k] - right.of[k] != sign * a->multiplicity[d >> 1].of[k])
                 return iso_fail(ISO_BUG, "arrangement: winding jumps wrongly across dart %d",
                                 (int)d);

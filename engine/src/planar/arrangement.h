@@ -17,7 +17,7 @@
 #include "planar/snap.h"
 
 typedef struct iso_winding {
-    int32_t of[2]; /* by operand */
+    int32_t of[OPERANDS_MAX]; /* by operand */
 } iso_winding;
 
 typedef struct iso_arrangement {

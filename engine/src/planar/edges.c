@@ -45,7 +45,7 @@ static iso_status out_of_range(int32_t contour, int32_t at, iso_point p) {
                     (int)contour, (int)at, iso_mm(p.x), iso_mm(p.y), iso_mm(ISO_COORDINATE_MAX));
 }
 
-iso_status edges_add(iso_edges *edges, const iso_region *region, uint8_t operand) {
+iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) {
     int32_t points = region->count ? region->first[region->count] : 0;
     ISO_TRY(edges_reserve(edges, (int64_t)edges->count + points));
     for (int32_t c = 0; c < region->count; c++) {
@@ -62,7 +62,7 @@ iso_status edges_add(iso_edges *edges, const iso_region *region, uint8_t operand
                 continue;
             edges->from[slot] = last;
             edges->to[slot] = p;
-            edges->flags[slot] = operand;
+            edges->flags[slot] = (uint8_t)(operand << EDGE_OPERAND_SHIFT);
             edges->successor[slot] = slot + 1;
             slot++;
             last = p;

@@ -16,8 +16,12 @@
 enum {
     EDGE_DEAD = 1,
     EDGE_SHARED_START = 2, /* other edges meet the vertex that starts this one */
-    EDGE_OPERAND = 4       /* belongs to the second operand */
+    EDGE_VISITED = 4,
+    EDGE_OPERAND_SHIFT = 4,
+    EDGE_OPERAND = 3 << EDGE_OPERAND_SHIFT /* which operand it belongs to */
 };
+
+enum { OPERANDS_MAX = 4 };
 
 typedef struct iso_edges {
     int32_t count;
@@ -31,7 +35,7 @@ void edges_free(iso_edges *edges);
 
 /* Append the contours of a region, without points repeated in a row. ISO_OUTSIDE if a coordinate
  * exceeds ISO_COORDINATE_MAX. */
-iso_status edges_add(iso_edges *edges, const iso_region *region, uint8_t operand) ISO_MUST_CHECK;
+iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) ISO_MUST_CHECK;
 
 /* Append an unlinked edge. */
 iso_status edges_push(iso_edges *edges, iso_point from, iso_point to, uint8_t flags) ISO_MUST_CHECK;
