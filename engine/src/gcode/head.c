@@ -1,0 +1,226 @@
+#include "gcode/head.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "gcode/number.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { E_DECIMALS = 100000, UNKNOWN = ISO_HEAD_UNKNOWN };
+
+/* E is summed up in 2^-28 of its last digit (10 nm): what 10^7 moves round away stays below a tenth
+ * of that digit, and 343 km of filament fit an int64. */
+#define E_FRACTION 28
+
+int32_t iso_head_feed(double speed) {
+    double feed = speed * 60 + 0.5;
+    return feed < 1 ? 1 : (int32_t)feed;
+}
+
+static int64_t to_e(double mm) {
+    return (int64_t)(mm * E_DECIMALS + (mm < 0 ? -0.5 : 0.5));
+}
+
+static int32_t to_micrometres(int32_t units) {
+    return units < 0 ? (units - 5) / 10 : (units + 5) / 10;
+}
+
+void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *options) {
+    const iso_gcode_options *o = options;
+    double section = pi / 4 * o->filament_diameter * o->filament_diameter;
+    double unit = 1.0 / ISO_UNITS_PER_MM;
+    double z_speed = o->travel_speed_z > 0 ? o->travel_speed_z : o->travel_speed;
+    double deretract_speed = o->deretract_speed > 0 ? o->deretract_speed : o->retract_speed;
+    memset(head, 0, offsetof(iso_head, planner));
+    iso_planner_start(&head->planner, o->junction_deviation);
+    head->lines = lines;
+    head->options = o;
+    head->e_scale = o->extrusion_multiplier * unit * unit * unit / section * E_DECIMALS *
+                    (double)((int64_t)1 << E_FRACTION);
+    head->travel_feed = iso_head_feed(o->travel_speed);
+    head->travel_feed_z = iso_head_feed(z_speed);
+    head->retract_feed = iso_head_feed(o->retract_speed);
+    head->deretract_feed = iso_head_feed(deretract_speed);
+    head->retract_e = to_e(o->retract_length);
+    head->deretract_e = to_e(o->retract_length + o->retract_restart_extra);
+    head->lift = iso_units(o->retract_lift);
+    head->role = head->width = UNKNOWN;
+    iso_head_forget_place(head);
+}
+
+void iso_head_begin_layer(iso_head *head, int32_t z) {
+    head->e = 0;
+    head->layer_z = z;
+    head->role = head->width = UNKNOWN;
+}
+
+void iso_head_forget_place(iso_head *head) {
+    head->x = head->y = head->z = head->feed = UNKNOWN;
+}
+
+double iso_head_filament(const iso_head *head) {
+    return (double)head->emitted / E_DECIMALS;
+}
+
+static char *put_feed(iso_head *head, char *p, int32_t feed) {
+    if (feed == head->feed)
+        return p;
+    head->feed = feed;
+    head->speed = feed / 60.0;
+    p = ISO_PUT(p, " F");
+    return iso_put_integer(p, feed);
+}
+
+/* Move the filament by `delta` last digits. */
+static char *put_e(iso_head *head, char *p, int64_t delta) {
+    head->e += delta;
+    p = ISO_PUT(p, " E");
+    return iso_put_hundred_thousandths(p,
+                                       head->options->use_relative_e_distances ? delta : head->e);
+}
+
+static void plan(iso_head *head, double dx, double dy, double dz, int extrudes) {
+    iso_planner_move move = {.dx = dx, .dy = dy, .dz = dz, .extrudes = extrudes};
+    move.length = sqrt(dx * dx + dy * dy + dz * dz);
+    move.speed = head->speed;
+    move.acceleration = extrudes ? head->options->acceleration : head->options->travel_acceleration;
+    double z_speed = head->options->max_speed_z;
+    double rise = dz < 0 ? -dz : dz;
+    if (rise > 0 && z_speed > 0 && rise * move.speed > z_speed * move.length)
+        move.speed = z_speed * move.length / rise;
+    iso_planner_add(&head->planner, &move);
+    head->moves++;
+    *(extrudes ? &head->bead_mm : &head->travel_mm) += move.length;
+}
+
+static void plan_filament(iso_head *head, int64_t e) {
+    iso_planner_move move = {.length = (double)(e < 0 ? -e : e) / E_DECIMALS,
+                             .speed = head->speed,
+                             .acceleration = head->options->retract_acceleration};
+    iso_planner_add(&head->planner, &move);
+    head->moves++;
+}
+
+static void move_filament(iso_head *head, int64_t e, int32_t feed) {
+    char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1");
+    p = put_e(head, p, e);
+    p = put_feed(head, p, feed);
+    iso_lines_accept(head->lines, iso_put_newline(p));
+    plan_filament(head, e);
+}
+
+void iso_head_retract(iso_head *head) {
+    if (head->retracted || head->retract_e == 0)
+        return;
+    head->retracted = 1;
+    head->retractions++;
+    move_filament(head, -head->retract_e, head->retract_feed);
+}
+
+static void deretract(iso_head *head) {
+    if (!head->retracted)
+        return;
+    head->retracted = 0;
+    move_filament(head, head->deretract_e, head->deretract_feed);
+}
+
+static void move_z(iso_head *head, int32_t z) {
+    if (z == head->z)
+        return;
+    char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1 Z");
+    p = iso_put_thousandths(p, to_micrometres(z));
+    p = put_feed(head, p, head->travel_feed_z);
+    iso_lines_accept(head->lines, iso_put_newline(p));
+    if (head->z != UNKNOWN)
+        plan(head, 0, 0, iso_mm(z - head->z), 0);
+    head->z = z;
+}
+
+static double mm_between(const iso_head *head, int32_t x, int32_t y) {
+    double dx = (double)x - head->x, dy = (double)y - head->y;
+    return sqrt(dx * dx + dy * dy) / 1000;
+}
+
+/* To the beginning of a path, filament ready. */
+static void travel(iso_head *head, iso_point to, int32_t z) {
+    int32_t x = to_micrometres(to.x), y = to_micrometres(to.y);
+    int known = head->x != UNKNOWN, away = x != head->x || y != head->y;
+    if (!known || (away && mm_between(head, x, y) > head->options->retract_before_travel))
+        iso_head_retract(head);
+    if (away) {
+        int32_t low = z > head->layer_z ? z : head->layer_z;
+        move_z(head, head->retracted ? low + head->lift : low);
+        char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1 X");
+        p = iso_put_thousandths(p, x);
+        p = ISO_PUT(p, " Y");
+        p = iso_put_thousandths(p, y);
+        p = put_feed(head, p, head->travel_feed);
+        iso_lines_accept(head->lines, iso_put_newline(p));
+        if (known)
+            plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
+        head->x = x;
+        head->y = y;
+    }
+    move_z(head, z);
+    deretract(head);
+}
+
+static void say_role(iso_head *head, int32_t role) {
+    if (role == head->role)
+        return;
+    head->role = role;
+    char *p = ISO_PUT(iso_lines_reserve(head->lines), ";TYPE:");
+    p = iso_put_text(p, iso_role_name((iso_role)role));
+    iso_lines_accept(head->lines, iso_put_newline(p));
+}
+
+static char *put_width(iso_head *head, char *p, int32_t width) {
+    head->width = width;
+    p = iso_put_decimal(ISO_PUT(p, ";WIDTH:"), width, 4);
+    return iso_put_newline(p);
+}
+
+/* From where the machine is to `to`, leaving a bead of `length` units and section `area`. A segment
+ * that vanishes in the rounding hands its material to the next one. */
+static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point to, int32_t z,
+                         double length, int32_t feed) {
+    head->drawn += (int64_t)(length * from->area * head->e_scale + 0.5);
+    int32_t x = to_micrometres(to.x), y = to_micrometres(to.y);
+    if (x == head->x && y == head->y && z == head->z)
+        return;
+    char *p = iso_lines_reserve(head->lines);
+    if (from->width != head->width)
+        p = put_width(head, p, from->width);
+    p = ISO_PUT(p, "G1 X");
+    p = iso_put_thousandths(p, x);
+    p = ISO_PUT(p, " Y");
+    p = iso_put_thousandths(p, y);
+    if (z != head->z) {
+        p = ISO_PUT(p, " Z");
+        p = iso_put_thousandths(p, to_micrometres(z));
+    }
+    int64_t e = (head->drawn + ((int64_t)1 << (E_FRACTION - 1))) >> E_FRACTION;
+    if (e != head->emitted)
+        p = put_e(head, p, e - head->emitted);
+    head->emitted = e;
+    p = put_feed(head, p, feed);
+    iso_lines_accept(head->lines, iso_put_newline(p));
+    plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, iso_mm(z - head->z), 1);
+    head->x = x;
+    head->y = y;
+    head->z = z;
+}
+
+void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
+                   const double *length, int32_t feed) {
+    int32_t segments = path->closed ? path->count : path->count - 1;
+    if (path->count < 2)
+        return;
+    travel(head, vertex[0].at, head->layer_z + vertex[0].z);
+    say_role(head, path->role);
+    for (int32_t i = 0; i < segments; i++) {
+        const iso_path_vertex *to = &vertex[i + 1 < path->count ? i + 1 : 0];
+        draw_segment(head, &vertex[i], to->at, head->layer_z + to->z, length[i], feed);
+    }
+}

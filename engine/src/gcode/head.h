@@ -1,0 +1,59 @@
+/* The print head as the G-code has it so far: where it is, how much filament it has drawn, what was
+ * last said. It writes every G1. */
+#ifndef ISO_GCODE_HEAD_H
+#define ISO_GCODE_HEAD_H
+
+#include <isoslice/gcode.h>
+#include <isoslice/path.h>
+
+#include "gcode/lines.h"
+#include "gcode/planner.h"
+
+enum { ISO_HEAD_UNKNOWN = INT32_MIN };
+
+typedef struct iso_head {
+    iso_lines *lines;
+    const iso_gcode_options *options;
+    double e_scale; /* E in fractions of its last digit for a bead of one unit^3 */
+    int32_t travel_feed, travel_feed_z, retract_feed, deretract_feed; /* mm/min */
+    int32_t lift;                                                     /* units */
+    int64_t retract_e, deretract_e;                                   /* last digits */
+
+    int32_t x, y;        /* um */
+    int32_t z;           /* units */
+    int32_t layer_z;     /* units */
+    int32_t feed;        /* mm/min */
+    double speed;        /* mm/s: the same */
+    int64_t e;           /* last digits since E was reset */
+    int64_t drawn;       /* E to have been extruded by now, with fraction */
+    int64_t emitted;     /* E that was, in last digits */
+    int32_t role, width; /* last said in comments */
+    int retracted;
+
+    double bead_mm, travel_mm;
+    int64_t moves, retractions;
+    iso_planner planner;
+} iso_head;
+
+/* The lines and options are the caller's and must outlive the head. */
+void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *options);
+
+/* E begins at 0 again; role and width are to be said anew. */
+void iso_head_begin_layer(iso_head *head, int32_t z);
+
+/* Somebody else moved it. */
+void iso_head_forget_place(iso_head *head);
+
+void iso_head_retract(iso_head *head);
+
+/* To the path's beginning and along it, at `feed` mm/min. length[i] in units from vertex i to the
+ * next one. Nothing happens on paths of less than two vertices. */
+void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
+                   const double *length, int32_t feed);
+
+/* mm of filament that beads took. */
+double iso_head_filament(const iso_head *head);
+
+int32_t iso_head_feed(double speed); /* mm/s to mm/min, at least 1 */
+
+#endif
