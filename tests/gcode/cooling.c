@@ -37,10 +37,13 @@ static void test_speeds_of_long_layers(void) {
     CHECK_EQUAL(0, pace.fan);
     CHECK_EQUAL(80, pace.bridge_fan);
     iso_cooling_pace(&pace, &work, &o, 0);
-    CHECK_EQUAL(1500, pace.feed[OUTER]);
-    CHECK_EQUAL(900, pace.feed[OUTER + 1]);
-    CHECK_EQUAL(1500, pace.feed[INNER]);
+    for (int s = 0; s < ISO_SPEED_SLOTS; s++)
+        CHECK_EQUAL(1500, pace.feed[s]);
     CHECK_EQUAL(0, pace.bridge_fan);
+    o.first_layer_speed = 0;
+    iso_cooling_pace(&pace, &work, &o, 0);
+    CHECK_EQUAL(1800, pace.feed[OUTER]);
+    CHECK_EQUAL(900, pace.feed[OUTER + 1]);
 }
 
 static void test_short_layers_take_the_least_time(void) {

@@ -410,6 +410,27 @@ static void test_temperatures_of_the_start_text_are_enough(void) {
     free(r.text);
 }
 
+/* Where a text of the user's moved the head, nothing is known of its place after it. */
+static void test_layer_text_that_moves(void) {
+    iso_paths layer[2] = {{0}, {0}};
+    for (int l = 0; l < 2; l++)
+        add_square(&layer[l], 0, 0, 50000, ISO_ROLE_PERIMETER, 4500);
+    iso_gcode_options o = plain();
+    iso_gcode_totals totals;
+    o.layer_gcode = "M400 ; G1 in a comment";
+    reading r = print(&totals, &o, layer, 2);
+    CHECK_EQUAL(2, reading_count(&r, "M400 ; G1 in a comment\n"));
+    CHECK_EQUAL(1, reading_count(&r, "G1 X0 Y0 F7800") + reading_count(&r, "G1 X0 Y0\n"));
+    free(r.text);
+    o.layer_gcode = "G1 X200 Y200 F9000\nM240";
+    r = print(&totals, &o, layer, 2);
+    CHECK_EQUAL(2, reading_count(&r, "G1 X0 Y0 F7800") + reading_count(&r, "G1 X0 Y0\n"));
+    CHECK_EQUAL(3, r.pulls);
+    free(r.text);
+    iso_paths_free(&layer[0]);
+    iso_paths_free(&layer[1]);
+}
+
 static void test_heights_within_a_layer(void) {
     iso_paths layer = {0};
     iso_point p[3] = {{0, 0}, {30000, 0}, {60000, 0}};
@@ -478,6 +499,7 @@ int main(void) {
     RUN(test_estimate_of_one_line);
     RUN(test_progress_is_filled_in);
     RUN(test_temperatures_of_the_start_text_are_enough);
+    RUN(test_layer_text_that_moves);
     RUN(test_heights_within_a_layer);
     RUN(test_bad_role_is_refused);
     RUN(test_flavours);

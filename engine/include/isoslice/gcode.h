@@ -18,7 +18,7 @@ typedef struct iso_gcode_options {
 
     double speed[ISO_ROLE_COUNT];
     double small_perimeter_speed; /* of perimeters with speed class 1 */
-    double first_layer_speed;     /* at most; 0: no limit */
+    double first_layer_speed;     /* of all roles on it; 0: their own */
     double travel_speed;
     double travel_speed_z; /* 0: travel_speed */
 

@@ -15,9 +15,7 @@ static double usual_speed(const iso_gcode_options *options, int slot, int32_t la
     double speed = options->speed[role];
     if (wall && slot % 2 && options->small_perimeter_speed > 0)
         speed = options->small_perimeter_speed;
-    if (layer == 0 && options->first_layer_speed > 0 && options->first_layer_speed < speed)
-        speed = options->first_layer_speed;
-    return speed;
+    return layer == 0 && options->first_layer_speed > 0 ? options->first_layer_speed : speed;
 }
 
 static double time_of(const iso_layer_pace *pace, const iso_layer_work *work) {
