@@ -1,6 +1,7 @@
-/* ISO_SORT(name, type, less): define `static void name(type *array, int64_t count)`, sorting in place by the strict
- * order `less(const type *a, const type *b)`. No allocation, O(n log n) at worst, and for a total order the same
- * result whatever the input's order. libc's qsort allocates and calls through a pointer. */
+/* ISO_SORT(name, type, less): define `static void name(type *array, int64_t count)`, sorting in
+ * place by the strict order `less(const type *a, const type *b)`. No allocation, O(n log n) at
+ * worst, and for a total order the same result whatever the input's order. libc's qsort allocates
+ * and calls through a pointer. */
 #ifndef ISO_BASE_SORT_H
 #define ISO_BASE_SORT_H
 
@@ -44,8 +45,12 @@
                 return;                                                                            \
             }                                                                                      \
             type a = array[0], b = array[count / 2], c = array[count - 1];                         \
-            type pivot = less(&a, &b) ? (less(&b, &c) ? b : less(&a, &c) ? c : a)                  \
-                                      : (less(&a, &c) ? a : less(&b, &c) ? c : b);                 \
+            type pivot = less(&a, &b) ? (less(&b, &c)   ? b                                        \
+                                         : less(&a, &c) ? c                                        \
+                                                        : a)                                       \
+                                      : (less(&a, &c)   ? a                                        \
+                                         : less(&b, &c) ? c                                        \
+                                                        : b);                                      \
             int64_t i = 0, j = count - 1;                                                          \
             for (;;) {                                                                             \
                 while (less(&array[i], &pivot))                                                    \
