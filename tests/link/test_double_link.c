@@ -336,6 +336,42 @@ static void test_random_heights_always_close(void) {
     }
 }
 
+/* The paper's own way (5b to 5d): the crossings of a level are edges of a digraph whose vertices
+ * are the faces. On triangles it can be linked in one way only, so both ways agree. */
+static void test_slices_are_linked_digraphs(void) {
+    static polyhedron s;
+    uint64_t state = 23;
+    const double level[4] = {0, 1, 2, 3};
+    iso_double_link surface;
+    iso_coloured_link link;
+    double at[80], height[480];
+    int32_t domain[2000], codomain[2000], successor[2000];
+    make_torus(&s, 10, 8);
+    if (!CHECK_OK(iso_double_link_from_faces(&surface, &s.faces, ISO_BOUNDARY_REFUSED)))
+        return;
+    for (int turn = 0; turn < 20; turn++) {
+        for (int v = 0; v < 80; v++)
+            at[v] = next_random(&state) % 5;
+        for (int32_t a = 0; a < 480; a++)
+            height[a] = at[iso_double_link_vertex(&surface, a)];
+        CHECK_OK(iso_slice_double_link(&link, &surface, height, level, 4));
+        int32_t size = link.link.size;
+        if (!CHECK(size > 100 && size < 2000))
+            return;
+        for (int32_t i = 0; i < size; i++) { /* a copy of the faces for each level */
+            int32_t a = iso_map_at(&link.link.projection[1], i);
+            int32_t colour = iso_map_at(&link.link.projection[0], i);
+            domain[i] = 160 * colour + iso_double_link_face(&surface, a);
+            codomain[i] = 160 * colour +
+                          iso_double_link_face(&surface, iso_double_link_opposite(&surface, a));
+        }
+        CHECK_OK(iso_link_digraph(successor, size, 640, domain, codomain));
+        CHECK(memcmp(successor, link.link.map[0].image, (size_t)size * sizeof *successor) == 0);
+        iso_multilink_free(&link.link);
+    }
+    iso_multilink_free(&surface.link);
+}
+
 static void test_places_in_four_dimensions(void) {
     static polyhedron s;
     static double position[4 * 80];
@@ -428,6 +464,7 @@ int main(void) {
     RUN(test_dodecahedron_sliced);
     RUN(test_levels_on_vertices_and_faces);
     RUN(test_random_heights_always_close);
+    RUN(test_slices_are_linked_digraphs);
     RUN(test_places_in_four_dimensions);
     RUN(test_fans_over_holes);
     RUN(test_memory_that_runs_out);

@@ -358,6 +358,40 @@ static void test_slices_to_link(void) {
     iso_multilink_free(&link.link);
 }
 
+static void test_nothing_at_all(void) {
+    iso_link link;
+    iso_square_link squares;
+    iso_square_patch patch;
+    iso_double_link surface, back;
+    iso_triangulation triangulation;
+    iso_coloured_link contours;
+    iso_filling_link filling;
+    iso_surface_counts counts;
+    const iso_faces none = {.dimension = 3};
+    CHECK_OK(iso_link_digraph(NULL, 0, 0, NULL, NULL));
+    CHECK_OK(iso_link_new(&link, 0, NULL, 3, NULL));
+    CHECK_OK(iso_multilink_check_bijective(&link.link, "φ"));
+    CHECK_OK(iso_square_link_new(&squares, 0, NULL, NULL, 3, NULL));
+    CHECK_OK(iso_square_patch_from_square_link(&patch, &squares));
+    CHECK_OK(iso_double_link_from_square_link(&surface, &squares, ISO_BOUNDARY_FANNED));
+    iso_multilink_free(&surface.link);
+    CHECK_OK(iso_double_link_from_faces(&surface, &none, ISO_BOUNDARY_REFUSED));
+    CHECK_OK(iso_triangulation_from_double_link(&triangulation, &surface));
+    CHECK_OK(iso_double_link_from_triangulation(&back, &triangulation));
+    CHECK_OK(iso_double_link_count(&counts, &back));
+    CHECK(counts.faces == 0 && counts.parts == 0 && counts.euler == 0);
+    CHECK_OK(iso_slice_double_link(&contours, &surface, NULL, NULL, 0));
+    CHECK_OK(iso_filling_link_new(&filling, 0, NULL, NULL, NULL));
+    iso_multilink_free(&link.link);
+    iso_multilink_free(&squares.link);
+    iso_multilink_free(&patch.link);
+    iso_multilink_free(&surface.link);
+    iso_multilink_free(&back.link);
+    iso_multilink_free(&triangulation.link);
+    iso_multilink_free(&contours.link);
+    iso_multilink_free(&filling.link);
+}
+
 static void test_memory_that_runs_out(void) {
     int32_t from[5] = {0, 1, 2, 2, 3}, to[5] = {1, 2, 0, 3, 2}, successor[5];
     const iso_axis axis[2] = {{4, 1}, {3, 1}};
@@ -401,6 +435,7 @@ int main(void) {
     RUN(test_filling_link);
     RUN(test_digraphs);
     RUN(test_slices_to_link);
+    RUN(test_nothing_at_all);
     RUN(test_memory_that_runs_out);
     return check_verdict();
 }

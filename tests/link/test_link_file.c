@@ -181,6 +181,7 @@ static void test_wrong_headers(void) {
         {36, 16, "coordinates of 16 bytes"},
         {60, 1, "byte 60 of the header is not 0"},
         {64, 0, "column 0 of the header has no proper name"},
+        {64, 0x0A41, "column 0 of the header has no proper name"}, /* a line feed */
         {68, 7, "column 0 of the header has no proper name"},
         {80, 4, "φ has rule 4"},
         {92, 6, "the range of φ is 6"},
@@ -276,6 +277,20 @@ static void test_mutated_bytes(void) {
     CHECK(accepted > 1000 && refused > 1000);
 }
 
+static void test_nothing_at_all(void) {
+    for (int kind = 0; kind < ISO_KIND_COUNT; kind++) {
+        iso_multilink view = iso_multilink_view((iso_link_kind)kind, 0, 2, 3, NULL), link, back;
+        CHECK_OK(iso_multilink_copy(&link, &view));
+        for (int number = 4; number <= 8; number += 4) {
+            CHECK_OK(iso_multilink_write(path, &view, (iso_link_number)number));
+            CHECK_OK(iso_multilink_read(&back, path));
+            check_same(&link, &back, 0);
+            iso_multilink_free(&back);
+        }
+        iso_multilink_free(&link);
+    }
+}
+
 static void test_paths_that_fail(void) {
     iso_multilink link, back;
     if (!CHECK_OK(make_sample(&link, ISO_KIND_LINK)))
@@ -325,6 +340,7 @@ int main(void) {
     RUN(test_wrong_headers);
     RUN(test_implicit_maps_need_no_memory);
     RUN(test_mutated_bytes);
+    RUN(test_nothing_at_all);
     RUN(test_paths_that_fail);
     RUN(test_memory_that_runs_out);
     remove(path);

@@ -153,7 +153,8 @@ ISO_API iso_status iso_multilink_write(const char *path, const iso_multilink *li
 
 /* Read a file, or the bytes of one. Lengths, shape and the range of every value are checked, so
  * that maps can be followed safely; iso_multilink_validate checks the equations.
- * ISO_UNREADABLE if it is no such file. The link owns its arrays. */
+ * ISO_UNREADABLE if it is no such file. The link owns its arrays; once its kind is checked,
+ * `iso_double_link surface = {link};` gives it its type. */
 ISO_API iso_status iso_multilink_read(iso_multilink *link, const char *path) ISO_MUST_CHECK;
 ISO_API iso_status iso_multilink_decode(iso_multilink *link, const void *bytes,
                                         size_t size) ISO_MUST_CHECK;

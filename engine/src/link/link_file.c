@@ -58,7 +58,7 @@ static void write_columns(iso_output *output, const iso_map *map, int count) {
 
 static void write_images(iso_output *output, const iso_map *map, int count, int32_t size) {
     for (int i = 0; i < count; i++)
-        if (map[i].rule == ISO_MAP_STORED)
+        if (map[i].rule == ISO_MAP_STORED && size > 0)
             write_block(output, map[i].image, (int64_t)size * 4);
 }
 

@@ -154,7 +154,8 @@ static iso_status copy_map(iso_map *to, const iso_map *from, int32_t size) {
     int32_t *image = iso_map_allocate(to, size, from->range);
     if (!image)
         return ISO_NO_MEMORY;
-    memcpy(image, from->image, (size_t)size * sizeof *image);
+    if (size > 0) /* else there may be no array to copy from */
+        memcpy(image, from->image, (size_t)size * sizeof *image);
     return ISO_OK;
 }
 
@@ -168,7 +169,8 @@ static iso_status copy_arrays(iso_multilink *to, const iso_multilink *from) {
     double *g = iso_multilink_allocate_g(to);
     if (!g)
         return ISO_NO_MEMORY;
-    memcpy(g, from->g, (size_t)from->size * (size_t)from->dimension * sizeof *g);
+    if (from->size > 0)
+        memcpy(g, from->g, (size_t)from->size * (size_t)from->dimension * sizeof *g);
     return ISO_OK;
 }
 
