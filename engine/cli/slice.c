@@ -8,8 +8,6 @@
 
 #include "verbs.h"
 
-extern __typeof__(iso_job_run) iso_job_run __attribute__((weak));
-
 /* ---- progress ---- */
 
 typedef struct progress {
@@ -92,8 +90,6 @@ static iso_status run_job(iso_report *report, const iso_arguments *arguments, co
     progress line = {0};
     iso_job_hooks hooks = {.threads = arguments->threads};
     bool talks = arguments->progress && !arguments->quiet;
-    if (!iso_job_run)
-        return iso_fail(ISO_BUG, "this build has no job");
     ISO_TRY(choose_timestamp(&hooks.timestamp, arguments->timestamp));
     if (talks) {
         hooks.progress = draw_progress;

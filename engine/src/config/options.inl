@@ -171,6 +171,5 @@ ISO_OPTION(end_gcode, TEXT,
            "", 0, 0, "G-code", "What comes after the print. [key] stands for an option's value.")
 ISO_OPTION(remaining_times, BOOL, "1", "", 0, 1, "G-code",
            "Tell the printer how much is done and how long it will take still (M73).")
-ISO_OPTION(gcode_comments, BOOL, "0", "", 0, 1, "G-code", "Say in a comment what each move is for.")
 
 #endif

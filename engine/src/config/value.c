@@ -227,15 +227,13 @@ static const char *parse_word(int32_t *value, iso_option_kind kind, const char *
 /* Spaces at both ends are dropped: a line of an ini file can't carry them. */
 static const char *parse_text(char *out, const char *text) {
     size_t n = 0;
-    while (*text == ' ')
-        text++;
     for (; *text; text++) {
         char c = *text;
         if (c == '\\' && text[1] != 0) {
             c = *++text;
             c = c == 'n' ? '\n' : c == 'r' ? '\r' : c == 't' ? '\t' : c;
         }
-        if (c == '\r')
+        if (c == '\r' || (c == ' ' && n == 0))
             continue;
         if ((unsigned char)c < ' ' && c != '\n' && c != '\t')
             return "has a control character";
