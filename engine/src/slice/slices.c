@@ -23,9 +23,10 @@ iso_status iso_slices_validate(const iso_slices *slices) {
         return iso_fail(ISO_BUG, "the contours hold crossings %lld to %lld, not 0 to %lld",
                         (long long)contour[0], (long long)contour[slices->contour_count],
                         (long long)slices->crossing_count);
+    /* two, where two triangles back to back hang on a surface by one edge */
     for (int32_t c = 0; c < slices->contour_count; c++)
-        if (contour[c + 1] < contour[c] + 3)
-            return iso_fail(ISO_BUG, "contour %d has fewer than three crossings", c);
+        if (contour[c + 1] < contour[c] + 2)
+            return iso_fail(ISO_BUG, "contour %d has fewer than two crossings", c);
     for (int64_t i = 0; i < slices->crossing_count; i++) {
         iso_vec2 p = slices->point[i];
         if (p.x - p.x != 0 || p.y - p.y != 0)
