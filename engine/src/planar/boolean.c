@@ -25,7 +25,12 @@ iso_planar_counts iso_planar_get_counts(const iso_planar_scratch *scratch) {
     return scratch->counts;
 }
 
-static iso_status resolve(iso_region *out, iso_face_rule *rule, iso_planar_scratch *scratch) {
+static void clear_all(const iso_choice *choice, int count) {
+    for (int i = 0; i < count; i++)
+        iso_region_clear(choice[i].out);
+}
+
+static iso_status resolve(const iso_choice *choice, int count, iso_planar_scratch *scratch) {
     iso_arrangement arrangement;
     int64_t collisions;
     scratch->counts.operations++;
@@ -37,40 +42,42 @@ static iso_status resolve(iso_region *out, iso_face_rule *rule, iso_planar_scrat
 #ifndef NDEBUG
     ISO_TRY(arrangement_validate(&arrangement));
 #endif
-    return trace_region(out, &arrangement, rule, &scratch->arena);
+    for (int i = 0; i < count; i++)
+        ISO_TRY(trace_region(&choice[i], &arrangement, &scratch->arena));
+    return ISO_OK;
 }
 
-iso_status planar_resolve(iso_region *out, iso_face_rule *rule, iso_planar_scratch *scratch) {
+iso_status planar_resolve(const iso_choice *choice, int count, iso_planar_scratch *scratch) {
     iso_arena_mark mark = iso_arena_get_mark(&scratch->arena);
-    iso_region_clear(out);
-    iso_status status = resolve(out, rule, scratch);
+    clear_all(choice, count);
+    iso_status status = resolve(choice, count, scratch);
     if (status != ISO_OK)
-        iso_region_clear(out);
+        clear_all(choice, count);
     iso_arena_pop(&scratch->arena, mark);
     scratch->edges.count = 0;
     return status;
 }
 
-static bool is_positive(iso_winding w) {
-    return w.of[0] > 0;
+static bool is_positive(const iso_winding *w, const void *context) {
+    return w->of[0] > 0;
 }
-static bool is_nonzero(iso_winding w) {
-    return w.of[0] != 0;
+static bool is_nonzero(const iso_winding *w, const void *context) {
+    return w->of[0] != 0;
 }
-static bool is_odd(iso_winding w) {
-    return w.of[0] & 1;
+static bool is_odd(const iso_winding *w, const void *context) {
+    return w->of[0] & 1;
 }
-static bool in_union(iso_winding w) {
-    return w.of[0] != 0 || w.of[1] != 0;
+static bool in_union(const iso_winding *w, const void *context) {
+    return w->of[0] != 0 || w->of[1] != 0;
 }
-static bool in_both(iso_winding w) {
-    return w.of[0] != 0 && w.of[1] != 0;
+static bool in_both(const iso_winding *w, const void *context) {
+    return w->of[0] != 0 && w->of[1] != 0;
 }
-static bool in_difference(iso_winding w) {
-    return w.of[0] != 0 && w.of[1] == 0;
+static bool in_difference(const iso_winding *w, const void *context) {
+    return w->of[0] != 0 && w->of[1] == 0;
 }
-static bool in_one(iso_winding w) {
-    return (w.of[0] != 0) != (w.of[1] != 0);
+static bool in_one(const iso_winding *w, const void *context) {
+    return (w->of[0] != 0) != (w->of[1] != 0);
 }
 
 /* Load the operands into scratch->edges, or fail with an empty `out`. */
@@ -79,7 +86,7 @@ static iso_status load(iso_region *out, const iso_region *a, const iso_region *b
     scratch->edges.count = 0;
     iso_status status = edges_add(&scratch->edges, a, 0);
     if (status == ISO_OK && b)
-        status = edges_add(&scratch->edges, b, EDGE_OPERAND);
+        status = edges_add(&scratch->edges, b, 1);
     if (status != ISO_OK)
         iso_region_clear(out);
     return status;
@@ -91,7 +98,7 @@ iso_status iso_region_clean(iso_region *out, const iso_region *in, iso_fill_rule
     if ((unsigned)rule > ISO_FILL_EVEN_ODD)
         return iso_fail(ISO_USAGE, "no fill rule has the number %d", (int)rule);
     ISO_TRY(load(out, in, NULL, scratch));
-    return planar_resolve(out, face_rule[rule], scratch);
+    return planar_resolve(&(iso_choice){out, face_rule[rule], NULL}, 1, scratch);
 }
 
 iso_status iso_boolean(iso_region *out, iso_boolean_kind kind, const iso_region *a,
@@ -100,5 +107,5 @@ iso_status iso_boolean(iso_region *out, iso_boolean_kind kind, const iso_region 
     if ((unsigned)kind > ISO_EXCLUSIVE)
         return iso_fail(ISO_USAGE, "no boolean has the number %d", (int)kind);
     ISO_TRY(load(out, a, b, scratch));
-    return planar_resolve(out, face_rule[kind], scratch);
+    return planar_resolve(&(iso_choice){out, face_rule[kind], NULL}, 1, scratch);
 }

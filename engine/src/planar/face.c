@@ -208,7 +208,7 @@ static iso_status flood_windings(iso_face_search *search, const int32_t *orbit, 
     ISO_TRY(ISO_PUSH(stack, arena, search->orbit_count));
     ISO_TRY(ISO_PUSH(seen, arena, search->orbit_count));
     memset(seen, 0, (size_t)search->orbit_count);
-    a->winding[0] = (iso_winding){{0, 0}};
+    a->winding[0] = (iso_winding){{0}};
     for (int32_t k = 0; k < search->component_count; k++) {
         int32_t n = 0, outside = orbit[search->component[k].outside];
         seen[outside] = 1;
@@ -222,8 +222,9 @@ static iso_status flood_windings(iso_face_search *search, const int32_t *orbit, 
                     stack[n++] = orbit[d ^ 1];
                     int sign = d & 1 ? -1 : 1;
                     const iso_winding *m = &a->multiplicity[d >> 1];
-                    a->winding[a->face[d ^ 1]] =
-                        (iso_winding){{here.of[0] - sign * m->of[0], here.of[1] - sign * m->of[1]}};
+                    iso_winding *beyond = &a->winding[a->face[d ^ 1]];
+                    for (int o = 0; o < OPERANDS_MAX; o++)
+                        beyond->of[o] = here.of[o] - sign * m->of[o];
                 }
                 d = dart_alpha(a, d);
             } while (d != start);

@@ -180,8 +180,8 @@ static iso_status draw_raw(const iso_region *in, const iso_offset_options *optio
     return ISO_OK;
 }
 
-static bool is_inside(iso_winding w) {
-    return w.of[0] > 0;
+static bool is_inside(const iso_winding *w, const void *context) {
+    return w->of[0] > 0;
 }
 
 iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_options *options,
@@ -199,5 +199,5 @@ iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_op
         ISO_TRY(draw_raw(in, options, scratch));
         ISO_TRY(edges_add(&scratch->edges, &scratch->raw, 0));
     }
-    return planar_resolve(out, is_inside, scratch);
+    return planar_resolve(&(iso_choice){out, is_inside, NULL}, 1, scratch);
 }

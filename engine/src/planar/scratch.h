@@ -12,12 +12,19 @@ struct iso_planar_scratch {
     iso_planar_counts counts;
 };
 
-/* Which faces belong to the result, by their winding numbers. */
-typedef bool iso_face_rule(iso_winding winding);
+/* Does a face belong to a result, by its winding numbers? */
+typedef bool iso_face_rule(const iso_winding *winding, const void *context);
 
-/* Arrange the edges in scratch->edges and fill `out` with the faces that `rule` chooses. Empties
- * scratch->edges; on failure clears `out`. */
-iso_status planar_resolve(iso_region *out, iso_face_rule *rule,
+/* A result asked of an arrangement. */
+typedef struct iso_choice {
+    iso_region *out;
+    iso_face_rule *rule;
+    const void *context;
+} iso_choice;
+
+/* Arrange the edges in scratch->edges and fill each choice's region with the faces its rule
+ * chooses. Empties scratch->edges; on failure clears all the regions. */
+iso_status planar_resolve(const iso_choice *choice, int count,
                           iso_planar_scratch *scratch) ISO_MUST_CHECK;
 
 #endif

@@ -232,15 +232,14 @@ static iso_status write_loops(iso_region *out, const iso_tracing *t, iso_arena *
     return find_parents(out->parent, t, arena);
 }
 
-iso_status trace_region(iso_region *out, const iso_arrangement *a, iso_face_rule *rule,
-                        iso_arena *arena) {
+iso_status trace_region(const iso_choice *choice, const iso_arrangement *a, iso_arena *arena) {
     iso_tracing tracing = {.a = a};
     uint8_t *chosen;
     ISO_TRY(ISO_PUSH(chosen, arena, a->face_count));
     for (int32_t f = 0; f < a->face_count; f++)
-        chosen[f] = rule(a->winding[f]);
+        chosen[f] = choice->rule(&a->winding[f], choice->context);
     tracing.chosen = chosen;
     ISO_TRY(find_zones(&tracing, arena));
     ISO_TRY(trace_loops(&tracing, arena));
-    return write_loops(out, &tracing, arena);
+    return write_loops(choice->out, &tracing, arena);
 }

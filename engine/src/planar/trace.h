@@ -5,9 +5,10 @@
 #include "planar/region.h"
 #include "planar/scratch.h"
 
-/* Append the boundary of the faces that `rule` chooses to the cleared region `out`: simple contours
- * in the order of their lexicographic least points, each starting there, with their parents. */
-iso_status trace_region(iso_region *out, const iso_arrangement *arrangement, iso_face_rule *rule,
+/* Fill the choice's region, cleared before, with the boundary of the faces it chooses: simple
+ * contours in the order of their lexicographic least points, each starting there, with their
+ * parents. */
+iso_status trace_region(const iso_choice *choice, const iso_arrangement *arrangement,
                         iso_arena *arena) ISO_MUST_CHECK;
 
 #endif

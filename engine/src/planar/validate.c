@@ -114,8 +114,8 @@ static iso_status check_nesting(const iso_region *region, const iso_region *trac
     return ISO_OK;
 }
 
-static bool is_inside(iso_winding w) {
-    return w.of[0] > 0;
+static bool is_inside(const iso_winding *w, const void *context) {
+    return w->of[0] > 0;
 }
 
 static iso_status validate(const iso_region *region, iso_region *traced,
@@ -129,7 +129,8 @@ static iso_status validate(const iso_region *region, iso_region *traced,
     ISO_TRY(check_edges(region, &scratch->edges));
     ISO_TRY(arrangement_validate(&arrangement));
     ISO_TRY(check_windings(&arrangement));
-    ISO_TRY(trace_region(traced, &arrangement, is_inside, &scratch->arena));
+    iso_choice choice = {traced, is_inside, NULL};
+    ISO_TRY(trace_region(&choice, &arrangement, &scratch->arena));
     return check_nesting(region, traced, &scratch->arena);
 }
 
