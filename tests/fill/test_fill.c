@@ -130,7 +130,8 @@ static void check_drawing(const iso_region *region, double spacing, double angle
     iso_fill_part whole = {region, member, region->count};
     iso_sweep sweep = iso_sweep_of(angle);
     iso_hatch hatch;
-    iso_sweep_repeat(&sweep, (int64_t)(spacing * 256) << 23, 0, -(1LL << 55), 1LL << 55);
+    iso_sweep_repeat(&sweep, (int64_t)(spacing * 256) << 23, 0,
+                     &(iso_extent){.low = -(1LL << 55), .high = 1LL << 55});
     CHECK_OK(iso_hatch_build(&hatch, &whole, &sweep, room, &scratch));
     CHECK_EQUAL(0, missing_segments(&hatch, edges, used, count));
     int stray = 0;
@@ -232,6 +233,50 @@ static void test_volume_of_strips_of_any_width(void) {
         drop_region(&region);
     }
     iso_arena_free(&scratch);
+}
+
+/* On which lines, with angle 0, paths lie whose links are left out. */
+static int line_places(double *place, const iso_region *region, double spacing) {
+    iso_arena scratch = {0};
+    iso_paths paths = {0};
+    iso_fill_options options = bare_options(spacing, 0, 1);
+    options.link_max = 0;
+    CHECK_OK(iso_fill_rectilinear(&paths, region, &options, &scratch));
+    for (int i = 0; i < paths.count; i++)
+        place[i] = paths.vertex[paths.path[i].first].at.y;
+    int count = paths.count;
+    iso_paths_free(&paths);
+    iso_arena_free(&scratch);
+    return count;
+}
+
+/* Fitted lines lie on edges that run along them, and half a gap from corners and round ends. */
+static void test_fitted_lines(void) {
+    static const iso_point square[] = {{0, 7}, {99999, 7}, {99999, 90007}, {0, 90007}};
+    static const iso_point tent[] = {{0, 0}, {200000, 0}, {100000, 90000}};
+    static const iso_point drop[] = {{0, 0}, {-100000, 90000}, {-200000, 0}, {-100000, -1000}};
+    double place[64];
+    iso_region region = {0};
+    add_points(&region, square, 4, -1);
+    CHECK_EQUAL(10, line_places(place, &region, 9800)); /* 9.18 gaps */
+    for (int i = 0; i < 10; i++)
+        CHECK_NEAR(7 + i * 10000, place[i], 2.5);
+    drop_region(&region);
+    add_points(&region, tent, 3, -1);
+    CHECK_EQUAL(10, line_places(place, &region, 9800));
+    for (int i = 0; i < 10; i++)
+        CHECK_NEAR(i * 90000 / 9.5, place[i], 2.5);
+    drop_region(&region);
+    add_points(&region, drop, 4, -1);
+    CHECK_EQUAL(9, line_places(place, &region, 9800)); /* 91000 high, 9.29 gaps */
+    for (int i = 0; i < 9; i++)
+        CHECK_NEAR(-1000 + (i + 0.5) * 91000 / 9, place[i], 2.5);
+    drop_region(&region);
+    add_circle(&region, 0, 0, 5, 1000, 0.18 / 2, -1);
+    CHECK_EQUAL(10, line_places(place, &region, 9800));
+    for (int i = 0; i < 10; i++)
+        CHECK_NEAR(-50000 + (i + 0.5) * 10000, place[i], 2.5);
+    drop_region(&region);
 }
 
 /* A disc's chords: unlinked lines at the places asked for, each as long as it must be. */
@@ -440,6 +485,7 @@ int main(void) {
     RUN(test_beads_stay_inside);
     RUN(test_volume);
     RUN(test_volume_of_strips_of_any_width);
+    RUN(test_fitted_lines);
     RUN(test_lines_of_a_disc);
     RUN(test_few_travels);
     RUN(test_links_are_no_longer_than_allowed);

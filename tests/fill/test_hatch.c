@@ -27,12 +27,13 @@ static void hatch_region(trial *bench, const iso_region *region, double angle, d
         member[i] = i;
     iso_fill_part part = {region, member, region->count};
     bench->sweep = iso_sweep_of(angle);
-    int64_t low, high, step = (int64_t)(spacing * 256) << 23;
-    iso_hatch_extent(&low, &high, &part, &bench->sweep);
+    iso_extent extent;
+    int64_t step = (int64_t)(spacing * 256) << 23;
+    iso_hatch_extent(&extent, &part, &bench->sweep, spacing);
     if (fit)
-        iso_sweep_fit(&bench->sweep, step, low, high);
+        iso_sweep_fit(&bench->sweep, step, &extent);
     else
-        iso_sweep_repeat(&bench->sweep, step, 0, low, high);
+        iso_sweep_repeat(&bench->sweep, step, 0, &extent);
     CHECK_OK(iso_hatch_build(&bench->hatch, &part, &bench->sweep, room, &bench->arena));
 }
 

@@ -19,8 +19,8 @@ typedef struct iso_fill_options {
     double spacing; /* units between neighbouring lines, >= ISO_FILL_SPACING_MIN; kept to 1/256 */
     double angle;   /* degrees counter-clockwise from x, the direction of the lines */
     double phase;   /* units; line k is k spacing + phase to the left of the bed's origin */
-    int32_t fit;    /* nonzero: no phase; in every part lines go from edge to edge, their spacing
-                     * and flow changed (by 1/2n for n lines at most) so that they fill it */
+    int32_t fit;    /* nonzero: no phase; every part's lines are spread over its extent, their
+                     * spacing, flow and width changed (n lines: by about 1/2n at most) to fill it */
     int32_t width, area; /* of the bead, units and units^2 */
     int32_t link_max;    /* units; longest piece of boundary that joins two lines; 0 = none */
     int32_t deviation; /* units; a link goes straight if the boundary is nowhere further from it */

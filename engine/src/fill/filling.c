@@ -10,16 +10,22 @@ static iso_status hatch_all(iso_hatch *hatch, const iso_region *region,
     ISO_TRY(ISO_PUSH(member, scratch, region->count));
     ISO_TRY(ISO_PUSH(room, scratch, region->count ? region->first[region->count] : 0));
     iso_sweep sweep = iso_sweep_of(options->angle);
-    int64_t low = INT64_MAX, high = INT64_MIN;
+    iso_extent whole_extent = {.low = INT64_MAX, .high = INT64_MIN}, extent;
     for (int32_t i = 0; i < region->count; i++) {
         member[i] = i;
-        int64_t bottom, top;
-        iso_hatch_extent(&bottom, &top, &(iso_fill_part){region, member + i, 1}, &sweep);
-        low = bottom < low ? bottom : low;
-        high = top > high ? top : high;
+        iso_hatch_extent(&extent, &(iso_fill_part){region, member + i, 1}, &sweep,
+                         options->spacing);
+        if (extent.low < whole_extent.low) {
+            whole_extent.low = extent.low;
+            whole_extent.low_flat = extent.low_flat;
+        }
+        if (extent.high > whole_extent.high) {
+            whole_extent.high = extent.high;
+            whole_extent.high_flat = extent.high_flat;
+        }
     }
-    if (low < high)
-        (void)iso_sweep_place(&sweep, options, low, high);
+    if (whole_extent.low < whole_extent.high)
+        (void)iso_sweep_place(&sweep, options, &whole_extent);
     else
         sweep.step = 2; /* no lines */
     iso_fill_part whole = {region, member, region->count};

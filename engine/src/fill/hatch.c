@@ -2,17 +2,45 @@
 
 #include <math.h>
 
-void iso_hatch_extent(int64_t *low, int64_t *high, const iso_fill_part *part,
-                      const iso_sweep *sweep) {
+static double distance(iso_point a, iso_point b) {
+    double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
+    return sqrt(dx * dx + dy * dy);
+}
+
+/* The length of contour within a few units, what rounding makes of an edge, of an end of v. */
+static void find_flats(iso_extent *extent, const iso_fill_part *part, const iso_sweep *sweep,
+                       double flat) {
+    const iso_point *point = part->region->point;
+    int32_t from = part->region->first[part->member[0]];
+    int32_t to = part->region->first[part->member[0] + 1], last = to - 1;
+    int64_t near_low = extent->low + 3 * ISO_SWEEP_ONE,
+            near_high = extent->high - 3 * ISO_SWEEP_ONE;
+    int64_t before = iso_sweep_v(sweep, point[last]);
+    double low = 0, high = 0;
+    for (int32_t i = from; i < to; last = i++) {
+        int64_t v = iso_sweep_v(sweep, point[i]);
+        if (v <= near_low && before <= near_low)
+            low += distance(point[last], point[i]);
+        if (v >= near_high && before >= near_high)
+            high += distance(point[last], point[i]);
+        before = v;
+    }
+    extent->low_flat = low > flat;
+    extent->high_flat = high > flat;
+}
+
+void iso_hatch_extent(iso_extent *extent, const iso_fill_part *part, const iso_sweep *sweep,
+                      double flat) {
     const iso_region *region = part->region;
     int32_t outer = part->member[0];
-    *low = INT64_MAX;
-    *high = INT64_MIN;
+    *extent = (iso_extent){.low = INT64_MAX, .high = INT64_MIN};
     for (int32_t i = region->first[outer]; i < region->first[outer + 1]; i++) {
         int64_t v = iso_sweep_v(sweep, region->point[i]);
-        *low = v < *low ? v : *low;
-        *high = v > *high ? v : *high;
+        extent->low = v < extent->low ? v : extent->low;
+        extent->high = v > extent->high ? v : extent->high;
     }
+    if (extent->low < extent->high)
+        find_flats(extent, part, sweep, flat);
 }
 
 /* How many lines lie below v. The quotient is at most one off before its correction. */
@@ -173,11 +201,6 @@ iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const is
     link_arcs(&hatch->link, contour_first, dart);
     iso_arena_pop(scratch, mark);
     return ISO_OK;
-}
-
-static double distance(iso_point a, iso_point b) {
-    double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
-    return sqrt(dx * dx + dy * dy);
 }
 
 int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart, double longest) {

@@ -23,9 +23,9 @@ typedef struct iso_hatch {
     iso_fill_part part;
 } iso_hatch;
 
-/* The least and the greatest v of the part's outer contour. */
-void iso_hatch_extent(int64_t *low, int64_t *high, const iso_fill_part *part,
-                      const iso_sweep *sweep);
+/* Of the part's outer contour. An edge counts as flat if it is longer than `flat` units. */
+void iso_hatch_extent(iso_extent *extent, const iso_fill_part *part, const iso_sweep *sweep,
+                      double flat);
 
 /* An edge that crosses lines: its points, and how many lines lie below each. */
 typedef struct iso_cut {

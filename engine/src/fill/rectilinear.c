@@ -150,11 +150,11 @@ static iso_status check_hatch(const iso_hatch *hatch, iso_arena *scratch) {
 
 static iso_status fill_part(iso_paths *out, const iso_fill_part *part, iso_sweep sweep,
                             const iso_fill_options *options, iso_cut *room, iso_arena *scratch) {
-    int64_t low, high;
-    iso_hatch_extent(&low, &high, part, &sweep);
-    if (low >= high)
+    iso_extent extent;
+    iso_hatch_extent(&extent, part, &sweep, options->spacing);
+    if (extent.low >= extent.high)
         return ISO_OK;
-    double share = iso_sweep_place(&sweep, options, low, high);
+    double share = iso_sweep_place(&sweep, options, &extent);
     if (sweep.count <= 0)
         return ISO_OK;
     iso_hatch hatch;

@@ -47,39 +47,48 @@ static int64_t floor_divide(int64_t a, int64_t b) {
     return q - (a % b < 0);
 }
 
-void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, int64_t low, int64_t high) {
-    int64_t origin = phase | 1;
-    int64_t from = floor_divide(low - origin, spacing) + 1;
-    int64_t to = floor_divide(high - origin, spacing); /* low and high are even: never on a line */
+void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, const iso_extent *extent) {
+    int64_t origin = phase | 1; /* low and high are even: never on a line */
+    int64_t from = floor_divide(extent->low - origin, spacing) + 1;
+    int64_t to = floor_divide(extent->high - origin, spacing);
     sweep->step = spacing;
     sweep->first = origin + from * spacing;
     sweep->count = to < from ? 0 : (int32_t)(to - from + 1);
 }
 
-void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high) {
-    /* An edge along the lines is straight to a unit only, so a line on it keeps two units off. */
-    int64_t inset = 2 * ISO_SWEEP_ONE, extent = high - low;
-    int64_t gaps = (extent + spacing / 2) / spacing;
-    sweep->count = (int32_t)gaps + 1;
-    if (gaps == 0) {
-        sweep->first = (low + extent / 2) | 1;
-        sweep->step = spacing;
-    } else {
-        sweep->first = (low + inset) | 1;
-        sweep->step = (extent - 2 * inset) / gaps & ~(int64_t)1;
-    }
+/* The height that fitted lines have to fill. */
+static int64_t fitted_height(int64_t spacing, const iso_extent *extent) {
+    return extent->high - extent->low + (extent->low_flat + extent->high_flat) * (spacing / 2);
 }
 
-double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options, int64_t low,
-                       int64_t high) {
+void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, const iso_extent *extent) {
+    /* An edge along the lines is straight to a unit only, so a line on it keeps two units off. */
+    int64_t inset = 2 * ISO_SWEEP_ONE, flats = extent->low_flat + extent->high_flat;
+    int64_t count = (fitted_height(spacing, extent) + spacing / 2) / spacing;
+    int64_t low = extent->low + extent->low_flat * inset;
+    int64_t high = extent->high - extent->high_flat * inset;
+    sweep->count = count > 1 ? (int32_t)count : 1;
+    if (count <= 1) { /* too thin for more than a line */
+        sweep->first = (extent->low + (extent->high - extent->low) / 2) | 1;
+        sweep->step = spacing;
+        return;
+    }
+    sweep->step = (2 * (high - low) / (2 * count - flats)) & ~(int64_t)1;
+    sweep->first = (low + (extent->low_flat ? 0 : sweep->step / 2)) | 1;
+}
+
+double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options,
+                       const iso_extent *extent) {
     enum { FRACTION = 256 }; /* options are kept to this part of a unit */
     int64_t scale = ISO_SWEEP_ONE / FRACTION;
     int64_t spacing = (int64_t)(options->spacing * FRACTION + 0.5) * scale;
     if (!options->fit) {
         int64_t phase = (int64_t)floor(options->phase * FRACTION + 0.5) * scale;
-        iso_sweep_repeat(sweep, spacing, phase, low, high);
+        iso_sweep_repeat(sweep, spacing, phase, extent);
         return 1;
     }
-    iso_sweep_fit(sweep, spacing, low, high);
-    return (double)(high - low + spacing) / ((double)sweep->count * (double)spacing);
+    iso_sweep_fit(sweep, spacing, extent);
+    if (sweep->count == 1 && !(extent->low_flat && extent->high_flat))
+        return 1; /* a sliver: its line stands for little more than itself */
+    return (double)fitted_height(spacing, extent) / (double)spacing / sweep->count;
 }

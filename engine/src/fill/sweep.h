@@ -27,17 +27,22 @@ static inline int64_t iso_sweep_v(const iso_sweep *sweep, iso_point p) {
     return 2 * (p.y * sweep->cosine - p.x * sweep->sine);
 }
 
-/* Lines every `spacing` from `phase` on, those strictly between v = low and v = high. */
-void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, int64_t low, int64_t high);
+/* How far a part reaches in v, low < high, and whether an edge along the lines ends it there. */
+typedef struct iso_extent {
+    int64_t low, high;
+    int low_flat, high_flat;
+} iso_extent;
 
-/* Low < high. Lines about `spacing` apart, the first and the last on the edges; one in the middle
- * if they are too near. */
-void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t low, int64_t high);
+/* Lines every `spacing` from `phase` on, those within the extent. */
+void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, const iso_extent *extent);
+
+/* Lines about `spacing` apart: on the edge where the extent is flat, half a gap from it where it is
+ * round or a corner, since a line there would have no length. */
+void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, const iso_extent *extent);
 
 /* One or the other, as the options have it. Returns the share of a line's usual volume that each of
- * these lines draws: fitted lines fill their extent and half a spacing on both sides, in equal
- * parts; others draw what is usual. */
-double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options, int64_t low,
-                       int64_t high);
+ * these lines draws: fitted ones share the extent and half a spacing beyond its flat ends; others
+ * draw what is usual. */
+double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options, const iso_extent *extent);
 
 #endif
