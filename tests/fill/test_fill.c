@@ -418,6 +418,9 @@ static void test_little_regions(void) {
     options.angle = 90;
     CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
     CHECK(paths.count <= 2);
+    static const iso_point back[] = {{5000, 0}, {0, 0}}; /* up and down on one line: no area */
+    add_points(&region, back, 2, -1);
+    CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
     drop_region(&region);
     iso_paths_free(&paths);
     iso_arena_free(&scratch);

@@ -39,7 +39,7 @@ void iso_hatch_extent(iso_extent *extent, const iso_fill_part *part, const iso_s
         extent->low = v < extent->low ? v : extent->low;
         extent->high = v > extent->high ? v : extent->high;
     }
-    if (extent->low < extent->high)
+    if (flat > 0 && extent->low < extent->high)
         find_flats(extent, part, sweep, flat);
 }
 

@@ -23,7 +23,8 @@ typedef struct iso_hatch {
     iso_fill_part part;
 } iso_hatch;
 
-/* Of the part's outer contour. An edge counts as flat if it is longer than `flat` units. */
+/* Of the part's outer contour. An end counts as flat if an edge longer than `flat` units lies
+ * along it; 0 doesn't look. */
 void iso_hatch_extent(iso_extent *extent, const iso_fill_part *part, const iso_sweep *sweep,
                       double flat);
 

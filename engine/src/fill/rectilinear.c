@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "fill/hatch.h"
+#include "planar/predicate.h"
 
 /* A run of the zigzag while it grows. */
 typedef struct zigzag {
@@ -148,10 +149,20 @@ static iso_status check_hatch(const iso_hatch *hatch, iso_arena *scratch) {
 }
 #endif
 
+static int is_counter_clockwise(const iso_fill_part *part) {
+    const iso_point *point = part->region->point;
+    int32_t from = part->region->first[part->member[0]];
+    int32_t to = part->region->first[part->member[0] + 1];
+    int64_t twice = 0; /* no contour within the range of coordinates is larger than 2^53 */
+    for (int32_t i = from + 1; i + 1 < to; i++)
+        twice += orient2d(point[from], point[i], point[i + 1]);
+    return twice >= 0;
+}
+
 static iso_status fill_part(iso_paths *out, const iso_fill_part *part, iso_sweep sweep,
                             const iso_fill_options *options, iso_cut *room, iso_arena *scratch) {
     iso_extent extent;
-    iso_hatch_extent(&extent, part, &sweep, options->spacing);
+    iso_hatch_extent(&extent, part, &sweep, options->fit ? options->spacing : 0);
     if (extent.low >= extent.high)
         return ISO_OK;
     double share = iso_sweep_place(&sweep, options, &extent);
@@ -159,10 +170,10 @@ static iso_status fill_part(iso_paths *out, const iso_fill_part *part, iso_sweep
         return ISO_OK;
     iso_hatch hatch;
     ISO_TRY(iso_hatch_build(&hatch, part, &sweep, room, scratch));
-    if (hatch.link.count && (hatch.crossing[0].edge & 1))
+    if (hatch.link.count && (hatch.crossing[0].edge & 1) && !is_counter_clockwise(part))
         return iso_fail(ISO_USAGE,
-                        "fill: contour %d runs clockwise but lies in no other; clean the "
-                        "region first",
+                        "fill: contour %d runs clockwise but lies in no other; clean the region "
+                        "first",
                         part->member[0]);
 #ifndef NDEBUG
     ISO_TRY(check_hatch(&hatch, scratch));
