@@ -3,10 +3,10 @@
  * Darts are corners: dart a = 3 t + k runs from corner k of triangle t to the next corner, its face
  * on the left seen from outside (counter-clockwise triangles). On the darts
  *
- *     alpha(a)     next corner of the same face           implicit: a + 1, or a - 2 at k = 2
- *     opposite(a)  the dart of the neighbour, other way    stored; an involution without fixed
- * points beta(a)      opposite(alpha^-1(a)): turns counter-clockwise about the vertex v(a) origin
- * vertex                           stored
+ *     alpha(a)     next corner of the same face; implicit: a + 1, or a - 2 at k = 2
+ *     opposite(a)  the neighbour's dart on the same edge; stored; an involution that fixes none
+ *     beta(a)      opposite(alpha^-1(a)): turns counter-clockwise about the vertex
+ *     v(a)         origin vertex; stored
  *
  * so that beta alpha = opposite and (alpha beta)^2 = 1 (paper, 4.1.4). */
 #ifndef ISOSLICE_MESH_H
@@ -19,14 +19,14 @@
 typedef struct iso_mesh_defects {
     int64_t triangles_read;
     int64_t degenerate;        /* triangles with two equal corners; dropped */
-    int64_t duplicate;         /* triangles that occur again; dropped */
-    int64_t cancelled;         /* coincident opposite faces; dropped in pairs */
+    int64_t duplicate;         /* triangles that occur again and are not needed; dropped */
+    int64_t cancelled;         /* coincident opposite triangles; dropped in pairs */
     int64_t welded_vertices;   /* merged across seams of at most 10 um */
-    int64_t bad_edges;         /* edges without exactly one partner, after exact welding */
+    int64_t bad_edges;         /* edges without exactly two opposite darts, after exact welding */
     int64_t flipped_triangles; /* turned to agree with their shell */
     int64_t inverted_shells;   /* turned inside out */
-    int64_t holes_closed;      /* boundary loops closed by a fan */
-    double cap_area;           /* mm^2 of those fans */
+    int64_t holes_closed;      /* boundary loops closed by caps */
+    double cap_area;           /* mm^2 of those caps */
     int64_t shells;            /* connected components of the result */
 } iso_mesh_defects;
 
@@ -50,8 +50,8 @@ static inline int32_t iso_mesh_alpha_inverse(int32_t dart) {
 
 /* Read an STL file, binary or ASCII by its content, weld it exactly, build the double-link and mend
  * or refuse its defects (docs/models.md has the rules). The mesh owns its arrays; free it with
- * iso_mesh_free. ISO_UNREADABLE: no file, not a model, truncated, NaN, infinite or absurd (|x| > 10
- * km) coordinates. ISO_UNSLICEABLE: open beyond mending, not orientable. */
+ * iso_mesh_free. ISO_UNREADABLE: no file, not a model, truncated, NaN, infinite or absurd (beyond
+ * 10 km) coordinates. ISO_UNSLICEABLE: open beyond mending, not orientable. */
 ISO_API iso_status iso_mesh_read(iso_mesh *mesh, const char *path) ISO_MUST_CHECK;
 
 /* The same from memory: `triangle` is [9 count] floats, x y z of three corners each. */
@@ -66,7 +66,7 @@ ISO_API void iso_mesh_translate(iso_mesh *mesh, iso_vec3 offset);
 /* Signed volume in mm^3, by the divergence theorem; exact up to rounding on a closed mesh. */
 ISO_API double iso_mesh_volume(const iso_mesh *mesh);
 
-/* Volume of the part with z0 <= z <= z1. */
+/* Volume of the part with z0 <= z <= z1, in closed form: nothing is sliced. */
 ISO_API double iso_mesh_volume_between(const iso_mesh *mesh, double z0, double z1);
 
 /* Check every equation of the double-link; the message names the first that fails and the dart. */

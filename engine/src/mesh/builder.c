@@ -153,28 +153,49 @@ static inline void link_dart(iso_mesh_builder *b, int32_t dart, int32_t u, int32
     b->open++;
 }
 
-static void add_batch(iso_mesh_builder *b, const char *at, int count, size_t stride) {
+/* Where vertices and edges lie is as random as the file's order: each step asks the cache for what
+ * the next one will read, for the whole batch. */
+static void weld_batch(iso_mesh_builder *b, int32_t *v, const char *at, int count, size_t stride) {
     corner c[3 * BATCH];
-    uint64_t hash[3 * BATCH];
+    uint64_t hash[3 * BATCH], mask = (uint64_t)b->table_size - 1;
     for (int t = 0; t < count; t++)
         memcpy(c + 3 * t, at + (size_t)t * stride, 3 * sizeof *c);
     for (int i = 0; i < 3 * count; i++) {
         c[i] = (corner){c[i].x + 0.0f, c[i].y + 0.0f, c[i].z + 0.0f}; /* -0 + 0 = 0 */
         hash[i] = hash_of(c[i]);
-        __builtin_prefetch(&b->table[hash[i] & ((uint64_t)b->table_size - 1)]);
+        __builtin_prefetch(&b->table[hash[i] & mask]);
+    }
+    for (int i = 0; i < 3 * count; i++) {
+        int32_t near = b->table[hash[i] & mask];
+        if (near >= 0) {
+            __builtin_prefetch(&b->mesh.position[near]);
+            __builtin_prefetch(&b->head[near]);
+        }
+    }
+    for (int i = 0; i < 3 * count; i++)
+        v[i] = weld(b, c[i], hash[i]);
+}
+
+static void add_batch(iso_mesh_builder *b, const char *at, int count, size_t stride) {
+    int32_t v[3 * BATCH];
+    weld_batch(b, v, at, count, stride);
+    for (int i = 0; i < 3 * count; i++) {
+        int32_t e = b->head[v[i]];
+        if (e >= 0) {
+            __builtin_prefetch(&b->mesh.origin[e]);
+            __builtin_prefetch(&b->mesh.opposite[e]);
+        }
     }
     for (int t = 0; t < count; t++) {
-        int32_t v[3];
-        for (int k = 0; k < 3; k++)
-            v[k] = weld(b, c[3 * t + k], hash[3 * t + k]);
-        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
+        const int32_t *w = v + 3 * t;
+        if (w[0] == w[1] || w[1] == w[2] || w[2] == w[0]) {
             b->mesh.defects.degenerate++;
             continue;
         }
         int32_t dart = 3 * b->mesh.triangle_count++;
-        memcpy(b->mesh.origin + dart, v, sizeof v);
+        memcpy(b->mesh.origin + dart, w, 3 * sizeof *w);
         for (int k = 0; k < 3; k++)
-            link_dart(b, dart + k, v[k], v[k == 2 ? 0 : k + 1]);
+            link_dart(b, dart + k, w[k], w[k == 2 ? 0 : k + 1]);
     }
 }
 
