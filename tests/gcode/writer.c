@@ -349,6 +349,23 @@ static void test_short_layers_take_their_time(void) {
         iso_paths_free(&layer[l]);
 }
 
+/* Travel at 130 mm/s and the filament's way back and forth at 40 mm/s count as layer time. */
+static void test_travel_counts_as_layer_time(void) {
+    iso_paths layer[2] = {{0}, {0}};
+    for (int l = 0; l < 2; l++)
+        for (int i = 0; i < 2; i++)
+            add_square(&layer[l], 650000 * i, 0, 150000, ISO_ROLE_PERIMETER, 4500);
+    iso_gcode_options o = plain();
+    o.cooling = 1;
+    o.slowdown_below_layer_time = 5;
+    iso_gcode_totals totals;
+    reading r = print(&totals, &o, layer, 2);
+    CHECK_NEAR(2 * (5 - 65 / 130.0 - 4 / 40.0), r.bead_time, 2e-3);
+    free(r.text);
+    iso_paths_free(&layer[0]);
+    iso_paths_free(&layer[1]);
+}
+
 /* One straight bead, started and ended at rest between retractions. */
 static void test_estimate_of_one_line(void) {
     iso_paths layer = {0};
@@ -496,6 +513,7 @@ int main(void) {
     RUN(test_retractions_balance);
     RUN(test_roles_and_widths_are_said_when_they_change);
     RUN(test_short_layers_take_their_time);
+    RUN(test_travel_counts_as_layer_time);
     RUN(test_estimate_of_one_line);
     RUN(test_progress_is_filled_in);
     RUN(test_temperatures_of_the_start_text_are_enough);

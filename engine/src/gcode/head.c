@@ -59,6 +59,12 @@ void iso_head_forget_place(iso_head *head) {
     head->x = head->y = head->z = head->feed = UNKNOWN;
 }
 
+double iso_head_retraction_time(const iso_head *head) {
+    double back = (double)head->retract_e / E_DECIMALS / head->retract_feed;
+    double forth = (double)head->deretract_e / E_DECIMALS / head->deretract_feed;
+    return 60 * (back + forth);
+}
+
 double iso_head_filament(const iso_head *head) {
     return (double)head->emitted / E_DECIMALS;
 }

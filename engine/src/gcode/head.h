@@ -51,6 +51,9 @@ void iso_head_retract(iso_head *head);
 void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
                    const double *length, int32_t feed);
 
+/* s to pull the filament back and to bring it forth again, acceleration left out. */
+double iso_head_retraction_time(const iso_head *head);
+
 /* mm of filament that beads took. */
 double iso_head_filament(const iso_head *head);
 

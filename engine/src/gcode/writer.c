@@ -81,6 +81,7 @@ static double length_between(const iso_path_vertex *a, const iso_path_vertex *b)
 static void measure(iso_layer_work *work, iso_gcode_writer *w, const iso_paths *paths) {
     const iso_path_vertex *end = NULL;
     double travel_units = 0;
+    int32_t retractions = 0;
     *work = (iso_layer_work){0};
     for (int32_t i = 0; i < paths->count; i++) {
         const iso_path *path = &paths->path[i];
@@ -93,12 +94,16 @@ static void measure(iso_layer_work *work, iso_gcode_writer *w, const iso_paths *
         int32_t last = path->count - 1;
         if (path->closed)
             sum += length[last] = length_between(&vertex[last], &vertex[0]);
-        if (end)
-            travel_units += length_between(end, &vertex[0]);
+        if (end) {
+            double units = length_between(end, &vertex[0]);
+            travel_units += units;
+            retractions += units > w->options.retract_before_travel * ISO_UNITS_PER_MM;
+        }
         end = &vertex[path->closed ? 0 : last];
         work->length[iso_speed_slot(path->role, path->speed_class)] += sum / ISO_UNITS_PER_MM;
     }
-    work->other_time = travel_units / ISO_UNITS_PER_MM * 60 / w->head.travel_feed;
+    work->other_time = travel_units / ISO_UNITS_PER_MM * 60 / w->head.travel_feed +
+                       retractions * iso_head_retraction_time(&w->head);
 }
 
 static iso_status check_layer(const iso_gcode_layer_info *layer) {
