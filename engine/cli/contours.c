@@ -10,6 +10,7 @@
 #include "base/output.h"
 #include "config/value.h"
 #include "verbs.h"
+#include "warnings.h"
 
 typedef struct cut {
     iso_mesh mesh;
@@ -133,6 +134,15 @@ static iso_status write_contours(const char *path, const cut *part) {
     return iso_output_commit(output);
 }
 
+static iso_status warn(const iso_arguments *arguments) {
+    iso_report report = {0};
+    iso_status status = iso_warnings_add(&report, &arguments->notes);
+    if (status == ISO_OK && !arguments->quiet)
+        iso_warnings_print(&report);
+    iso_report_free(&report);
+    return status;
+}
+
 iso_status iso_verb_contours(const iso_arguments *arguments) {
     char name[4096];
     const char *path = arguments->output;
@@ -144,6 +154,7 @@ iso_status iso_verb_contours(const iso_arguments *arguments) {
     if (strcmp(path, "-") != 0 && !ends_with(path, ".mlk") && !ends_with(path, ".json") &&
         !ends_with(path, ".svg"))
         return iso_fail(ISO_USAGE, "%s: contours are written as .mlk, .json or .svg", path);
+    ISO_TRY(warn(arguments));
     cut part = {0};
     iso_status status = slice_part(&part, arguments->file[0], &arguments->options);
     if (status == ISO_OK)

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "verbs.h"
+#include "warnings.h"
 
 /* ---- progress ---- */
 
@@ -35,31 +36,6 @@ static void draw_progress(void *payload, double done, const char *stage) {
 static void clear_progress(const progress *line) {
     if (line->shown)
         fprintf(stderr, "\r\033[K");
-}
-
-/* ---- what there is to say ---- */
-
-static iso_status note_settings(iso_report *report, const iso_config_notes *notes) {
-    if (notes->unknown_count > 0)
-        ISO_TRY(iso_report_warn(report, "unknown-setting", "%d %s: %s", notes->unknown_count,
-                                notes->unknown_count == 1
-                                    ? "setting is not isoslice's and was left out"
-                                    : "settings are not isoslice's and were left out",
-                                notes->unknown));
-    if (notes->unused_count > 0)
-        ISO_TRY(iso_report_warn(report, "setting-not-followed",
-                                "not known, so the usual value stays: %s", notes->unused));
-    return ISO_OK;
-}
-
-/* The report has all of it. */
-static void print_warnings(const iso_report *report) {
-    enum { SHOWN = 240 };
-    for (int32_t i = 0; i < report->warning_count; i++) {
-        const char *message = report->warning[i].message;
-        fprintf(stderr, "isoslice: warning: %.*s%s [%s]\n", SHOWN, message,
-                strlen(message) > SHOWN ? "..." : "", report->warning[i].code);
-    }
 }
 
 static void print_summary(const iso_report *report, const char *output) {
@@ -107,9 +83,9 @@ static iso_status run_job(iso_report *report, const iso_arguments *arguments, co
 static iso_status finish(iso_report *report, const iso_arguments *arguments, iso_status status) {
     char message[1024];
     snprintf(message, sizeof message, "%s", iso_error_message());
-    iso_status after = note_settings(report, &arguments->notes);
+    iso_status after = iso_warnings_add(report, &arguments->notes);
     if (!arguments->quiet)
-        print_warnings(report);
+        iso_warnings_print(report);
     if (after == ISO_OK && arguments->report)
         after = iso_report_write(report, &arguments->options, status, message, arguments->report);
     if (status == ISO_OK)

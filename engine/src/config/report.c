@@ -30,16 +30,21 @@ static iso_status copy_text(char **copy, const char *text) {
 }
 
 iso_status iso_report_warn(iso_report *report, const char *code, const char *format, ...) {
-    char text[1024];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
+    if (length < 0)
+        return iso_fail(ISO_BUG, "a warning %s that can't be formatted", code);
     ISO_TRY(ISO_GROW(report->warning, report->warning_capacity, report->warning_count + 1));
-    iso_report_warning *warning = &report->warning[report->warning_count];
-    ISO_TRY(copy_text(&warning->message, text));
-    warning->code = code;
-    report->warning_count++;
+    size_t size = (size_t)length + 1;
+    char *message = iso_allocate(size);
+    if (!message)
+        return iso_no_memory(size);
+    va_start(arguments, format);
+    vsnprintf(message, size, format, arguments);
+    va_end(arguments);
+    report->warning[report->warning_count++] = (iso_report_warning){code, message};
     return ISO_OK;
 }
 
