@@ -54,13 +54,21 @@ static void set_usual_mode(int descriptor) {
     (void)!fchmod(descriptor, 0666 & ~mask);
 }
 
+static iso_status copy_path(iso_output *output, const char *path) {
+    size_t size = strlen(path) + 1;
+    output->path = iso_allocate(size);
+    if (!output->path)
+        return iso_no_memory(size);
+    memcpy(output->path, path, size);
+    return ISO_OK;
+}
+
 static iso_status open_beside(iso_output *output, const char *path) {
     size_t length = strlen(path);
-    output->path = iso_allocate(length + 1);
+    ISO_TRY(copy_path(output, path));
     output->temporary = iso_allocate(length + 8);
-    if (!output->path || !output->temporary)
-        return iso_no_memory(length);
-    memcpy(output->path, path, length + 1);
+    if (!output->temporary)
+        return iso_no_memory(length + 8);
     snprintf(output->temporary, length + 8, "%s.XXXXXX", path);
     output->descriptor = mkstemp(output->temporary);
     if (output->descriptor < 0)
@@ -75,6 +83,8 @@ static iso_status open_scratch(iso_output *output, const char *path) {
     output->target = strcmp(path, "-") == 0 ? dup(STDOUT_FILENO) : open(path, O_WRONLY);
     if (output->target < 0)
         return not_written(path);
+    if (strcmp(path, "-") != 0)
+        ISO_TRY(copy_path(output, path));
     FILE *scratch = tmpfile();
     if (!scratch)
         return not_written(path);
