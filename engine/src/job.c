@@ -10,45 +10,19 @@
 #include <math.h>
 #include <stdlib.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include "base/memory.h"
 #include "base/output.h"
 #include "base/parallel.h"
-#include "config/settings.h"
 #include "gcode/writer.h"
+#include "layer.h"
 #include "path/order.h"
-#include "planar/island.h"
 #include "planar/section.h"
 
 enum { LAYERS_PER_THREAD = 8 };
 
-enum {
-    STAGE_READ,
-    STAGE_SLICE,
-    STAGE_REGIONS,
-    STAGE_WALLS,
-    STAGE_FILL,
-    STAGE_ORDER,
-    STAGE_WRITE,
-    STAGE_COUNT
-};
-static const char *const stage_name[STAGE_COUNT] = {"read", "slice", "regions", "walls",
-                                                    "fill", "order", "write"};
-
-/* A layer on its way to the printer. */
-typedef struct iso_layer {
-    iso_paths paths;
-    double area; /* mm^2 of its region */
-    double seconds[STAGE_COUNT];
-} iso_layer;
-
-/* What each thread needs for itself. */
-typedef struct iso_hand {
-    iso_planar_scratch *planar;
-    iso_arena arena;
-    iso_region raw, region, island, inside;
-} iso_hand;
+static const char *const stage_name[ISO_STAGE_COUNT] = {"read",   "slice", "regions", "walls",
+                                                        "shells", "fill",  "order",   "write"};
 
 typedef struct iso_job {
     iso_report *report;
@@ -65,20 +39,17 @@ typedef struct iso_job {
     iso_levels levels;
     double projected; /* mm^2 of all triangles seen from above */
 
-    int32_t block, block_first; /* layers in a block; its first */
-    iso_layer *layer;           /* [block] */
+    int32_t block;       /* layers filled in one go */
+    int32_t top, bottom; /* neighbours that the shells look at */
+    int32_t ring;        /* >= block + top + bottom: layer i is at layer[i % ring] */
+    iso_layer *layer;    /* [ring] */
+    int32_t begin;       /* first layer of the parallel loop under way */
     iso_paths ordered;
     iso_output *output;
     iso_gcode_writer *writer;
     char *start, *end; /* expanded texts */
-    double seconds[STAGE_COUNT];
+    double seconds[ISO_STAGE_COUNT];
 } iso_job;
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void progress(const iso_job *job, double done, const char *stage) {
     if (job->hooks->progress)
@@ -90,7 +61,7 @@ static void progress(const iso_job *job, double done, const char *stage) {
 static iso_status read_models(iso_job *job, const char *const *input) {
     for (int32_t i = 0; i < job->model_count; i++) {
         iso_mesh *mesh = &job->mesh[i];
-        progress(job, 0.1 * i / job->model_count, stage_name[STAGE_READ]);
+        progress(job, 0.1 * i / job->model_count, stage_name[ISO_STAGE_READ]);
         ISO_TRY(iso_mesh_read(mesh, input[i]));
         ISO_TRY(iso_report_add_input(job->report, input[i], mesh));
         if (i == 0) {
@@ -207,91 +178,77 @@ static iso_status verify_volume(const iso_job *job) {
 
 /* ---- layers ---- */
 
-/* Walls and fill of one island, printed together. */
-static iso_status make_island(iso_layer *layer, iso_hand *hand, const iso_layer_settings *settings,
-                              int32_t group) {
-    iso_wall_options wall = settings->wall;
-    double begun = now();
-    wall.like.group = group;
-    ISO_TRY(iso_walls(&layer->paths, &hand->inside, &hand->island, &wall, hand->planar));
-    double walled = now();
-    for (int32_t pass = 0; pass < settings->fill_count; pass++) {
-        iso_fill_options fill = settings->fill[pass];
-        fill.like.group = group;
-        ISO_TRY(iso_fill_rectilinear(&layer->paths, &hand->inside, &fill, &hand->arena));
-    }
-    layer->seconds[STAGE_WALLS] += walled - begun;
-    layer->seconds[STAGE_FILL] += now() - walled;
-    return ISO_OK;
+static iso_layer *layer_at(const iso_job *job, int32_t index) {
+    return &job->layer[index % job->ring];
 }
 
-static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_job *job, int32_t index) {
-    double begun = now();
-    iso_region_clear(&hand->raw);
-    for (int32_t m = 0; m < job->model_count; m++)
-        ISO_TRY(section_add(&hand->raw, &job->slices[m], index));
-    ISO_TRY(iso_region_simplify(&hand->region, &hand->raw, settings_thinning(job->options),
-                                hand->planar));
-    layer->area = (double)iso_region_double_area(&hand->region) / 2 /
-                  ((double)ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
-    layer->seconds[STAGE_REGIONS] += now() - begun;
-    return ISO_OK;
-}
-
-static iso_status make_layer(void *payload, int64_t number, int worker) {
+static iso_status outline_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
-    iso_layer *layer = &job->layer[number];
+    int32_t index = job->begin + (int32_t)number;
+    iso_layer *layer = layer_at(job, index);
+    settings_of_layer(&layer->settings, job->options, index, job->levels.height[index]);
+    return layer_outline(layer, &job->hand[worker], job->slices, job->model_count, index);
+}
+
+static int32_t least(int32_t a, int32_t b) {
+    return a < b ? a : b;
+}
+
+static iso_status fill_task(void *payload, int64_t number, int worker) {
+    iso_job *job = payload;
     iso_hand *hand = &job->hand[worker];
-    int32_t index = job->block_first + (int32_t)number;
-    iso_layer_settings settings;
-    iso_islands islands;
-    settings_of_layer(&settings, job->options, index, job->levels.height[index]);
-    memset(layer->seconds, 0, sizeof layer->seconds);
-    iso_paths_clear(&layer->paths);
-    ISO_TRY(make_region(layer, hand, job, index));
-    ISO_TRY(iso_skirt(&layer->paths, &hand->region, settings.skirt_loops, settings.skirt_distance,
-                      &settings.skirt, hand->planar));
+    int32_t index = job->begin + (int32_t)number;
+    iso_shell_neighbours around = {.top = job->top, .bottom = job->bottom};
+    around.above_count = least(job->top, job->levels.count - 1 - index);
+    around.below_count = least(job->bottom, index);
+    const iso_region **region;
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
-    iso_status status = islands_of(&islands, &hand->region, &hand->arena);
-    for (int32_t i = 0; status == ISO_OK && i < islands.count; i++) {
-        status = island_copy(&hand->island, &hand->region, &islands, i);
-        if (status == ISO_OK)
-            status = make_island(layer, hand, &settings, i);
-    }
+    ISO_TRY(ISO_PUSH(region, &hand->arena, around.above_count + around.below_count));
+    for (int32_t i = 0; i < around.above_count; i++)
+        region[i] = &layer_at(job, index + 1 + i)->region;
+    for (int32_t i = 0; i < around.below_count; i++)
+        region[around.above_count + i] = &layer_at(job, index - 1 - i)->region;
+    around.above = region;
+    around.below = region + around.above_count;
+    iso_status status = layer_fill(layer_at(job, index), hand, &around);
     iso_arena_pop(&hand->arena, mark);
     return status;
 }
 
-static iso_status write_layer(iso_job *job, int32_t number, iso_point *position) {
-    iso_layer *layer = &job->layer[number];
-    int32_t index = job->block_first + number;
-    double begun = now();
+static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) {
+    iso_layer *layer = layer_at(job, index);
+    double begun = iso_stage_clock();
     ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, position, &job->hand[0].arena));
-    double ordered = now();
+    double ordered = iso_stage_clock();
     double top = job->levels.top[index] + job->options->z_offset;
     iso_gcode_layer_info info = {.index = index,
                                  .z = iso_units(top),
                                  .height = iso_units(job->levels.height[index]),
                                  .paths = &job->ordered};
     ISO_TRY(iso_gcode_layer(job->writer, &info));
-    layer->seconds[STAGE_ORDER] += ordered - begun;
-    layer->seconds[STAGE_WRITE] += now() - ordered;
-    for (int s = 0; s < STAGE_COUNT; s++)
+    layer->seconds[ISO_STAGE_ORDER] = ordered - begun;
+    layer->seconds[ISO_STAGE_WRITE] = iso_stage_clock() - ordered;
+    for (int s = 0; s < ISO_STAGE_COUNT; s++)
         job->seconds[s] += layer->seconds[s];
-    job->report->sliced_volume += layer->area * job->levels.height[index];
+    job->report->sliced_volume += layer->square_mm * job->levels.height[index];
     return ISO_OK;
 }
 
+/* A window of layers moves up: outlines run ahead by the height of the top shell, and stay until
+ * the bottom shell above them is done. */
 static iso_status make_layers(iso_job *job) {
     iso_point position = {0, 0};
-    for (job->block_first = 0; job->block_first < job->levels.count;
-         job->block_first += job->block) {
-        int32_t left = job->levels.count - job->block_first;
-        int32_t count = left < job->block ? left : job->block;
-        progress(job, 0.15 + 0.85 * job->block_first / job->levels.count, "layers");
-        ISO_TRY(iso_parallel_for(job->pool, count, make_layer, job));
-        for (int32_t i = 0; i < count; i++)
-            ISO_TRY(write_layer(job, i, &position));
+    int32_t count = job->levels.count, outlined = 0;
+    for (int32_t filled = 0; filled < count;) {
+        int32_t end = least(filled + job->block, count), ahead = least(end + job->top, count);
+        progress(job, 0.15 + 0.85 * filled / count, "layers");
+        job->begin = outlined;
+        ISO_TRY(iso_parallel_for(job->pool, ahead - outlined, outline_task, job));
+        outlined = ahead;
+        job->begin = filled;
+        ISO_TRY(iso_parallel_for(job->pool, end - filled, fill_task, job));
+        for (; filled < end; filled++)
+            ISO_TRY(write_layer(job, filled, &position));
     }
     progress(job, 1, "done");
     return ISO_OK;
@@ -345,26 +302,26 @@ static iso_status job_new(iso_job *job, int32_t input_count) {
     ISO_TRY(iso_pool_new(&job->pool, job->hooks->threads));
     job->threads = job->report->threads = iso_pool_threads(job->pool);
     job->block = LAYERS_PER_THREAD * job->threads;
+    settings_shells(&job->top, &job->bottom, job->options);
     ISO_TRY(ISO_ALLOCATE(job->mesh, input_count));
     memset(job->mesh, 0, (size_t)input_count * sizeof *job->mesh);
     ISO_TRY(ISO_ALLOCATE(job->slices, input_count));
     memset(job->slices, 0, (size_t)input_count * sizeof *job->slices);
-    ISO_TRY(ISO_ALLOCATE(job->layer, job->block));
-    memset(job->layer, 0, (size_t)job->block * sizeof *job->layer);
     ISO_TRY(ISO_ALLOCATE(job->hand, job->threads));
     memset(job->hand, 0, (size_t)job->threads * sizeof *job->hand);
     for (int32_t i = 0; i < job->threads; i++)
-        ISO_TRY(iso_planar_scratch_new(&job->hand[i].planar));
+        ISO_TRY(hand_new(&job->hand[i]));
     return ISO_OK;
 }
 
-static void hand_free(iso_hand *hand) {
-    iso_planar_scratch_free(hand->planar);
-    iso_arena_free(&hand->arena);
-    iso_region_free(&hand->raw);
-    iso_region_free(&hand->region);
-    iso_region_free(&hand->island);
-    iso_region_free(&hand->inside);
+/* Once the number of layers is known. */
+static iso_status layers_new(iso_job *job) {
+    job->top = least(job->top, job->levels.count);
+    job->bottom = least(job->bottom, job->levels.count);
+    job->ring = least(job->block + job->top + job->bottom, job->levels.count);
+    ISO_TRY(ISO_ALLOCATE(job->layer, job->ring));
+    memset(job->layer, 0, (size_t)job->ring * sizeof *job->layer);
+    return ISO_OK;
 }
 
 static void job_free(iso_job *job) {
@@ -374,8 +331,8 @@ static void job_free(iso_job *job) {
         iso_mesh_free(&job->mesh[i]);
     for (int32_t i = 0; job->slices && i < job->model_count; i++)
         iso_slices_free(&job->slices[i]);
-    for (int32_t i = 0; job->layer && i < job->block; i++)
-        iso_paths_free(&job->layer[i].paths);
+    for (int32_t i = 0; job->layer && i < job->ring; i++)
+        layer_free(&job->layer[i]);
     for (int32_t i = 0; job->hand && i < job->threads; i++)
         hand_free(&job->hand[i]);
     iso_paths_free(&job->ordered);
@@ -404,28 +361,29 @@ static void report_kernel(iso_job *job) {
 static iso_status report_stages(iso_job *job, double begun) {
     struct rusage usage;
     report_kernel(job);
-    job->report->seconds = now() - begun;
+    job->report->seconds = iso_stage_clock() - begun;
     if (getrusage(RUSAGE_SELF, &usage) == 0)
         job->report->peak_memory_kib = usage.ru_maxrss;
-    for (int s = 0; s < STAGE_COUNT; s++)
+    for (int s = 0; s < ISO_STAGE_COUNT; s++)
         ISO_TRY(iso_report_add_stage(job->report, stage_name[s], job->seconds[s], 0));
     return ISO_OK;
 }
 
 static iso_status load(iso_job *job, const char *const *input, int32_t input_count) {
-    double begun = now();
+    double begun = iso_stage_clock();
     if (input_count < 1)
         return iso_fail(ISO_USAGE, "no model was given");
     ISO_TRY(iso_options_check(job->options));
     ISO_TRY(job_new(job, input_count));
     ISO_TRY(read_models(job, input));
     ISO_TRY(place_models(job));
-    double read = now();
-    progress(job, 0.1, stage_name[STAGE_SLICE]);
+    double read = iso_stage_clock();
+    progress(job, 0.1, stage_name[ISO_STAGE_SLICE]);
     ISO_TRY(slice_models(job));
     ISO_TRY(verify_volume(job));
-    job->seconds[STAGE_READ] = read - begun;
-    job->seconds[STAGE_SLICE] = now() - read;
+    ISO_TRY(layers_new(job));
+    job->seconds[ISO_STAGE_READ] = read - begun;
+    job->seconds[ISO_STAGE_SLICE] = iso_stage_clock() - read;
     return ISO_OK;
 }
 
@@ -434,9 +392,9 @@ static iso_status print_job(iso_job *job, const char *const *input, int32_t inpu
     ISO_TRY(load(job, input, input_count));
     ISO_TRY(begin_output(job, output));
     ISO_TRY(make_layers(job));
-    double begun = now();
+    double begun = iso_stage_clock();
     ISO_TRY(finish_output(job));
-    job->seconds[STAGE_WRITE] += now() - begun;
+    job->seconds[ISO_STAGE_WRITE] += iso_stage_clock() - begun;
     return ISO_OK;
 }
 
@@ -444,7 +402,7 @@ iso_status iso_job_run(iso_report *report, const iso_options *options, const cha
                        int32_t input_count, const char *output, const iso_job_hooks *hooks) {
     static const iso_job_hooks none;
     iso_job job = {.report = report, .options = options, .hooks = hooks ? hooks : &none};
-    double begun = now();
+    double begun = iso_stage_clock();
     iso_status status = print_job(&job, input, input_count, output);
     iso_status reported = report_stages(&job, begun);
     job_free(&job);

@@ -12,15 +12,16 @@ static iso_bead bead_of(const iso_options *options, iso_role role, bool first, d
                        iso_units(height));
 }
 
-/* Of gcode_resolution, the part that sections may use up; arcs of offsets take as much, and the
+/* Of gcode_resolution, the part that outlines may use up; arcs of offsets take as much, and the
  * rest is for the rounding of both. */
-int32_t settings_thinning(const iso_options *options) {
+static int32_t thinning(const iso_options *options) {
     return iso_units(0.4 * options->gcode_resolution);
 }
 
 static void set_walls(iso_layer_settings *s, const iso_options *options, bool first,
                       double height) {
-    int32_t tolerance = settings_thinning(options);
+    int32_t tolerance = thinning(options);
+    s->thinning = tolerance;
     s->wall = (iso_wall_options){
         .count = options->perimeters,
         .external = bead_of(options, ISO_ROLE_EXTERNAL_PERIMETER, first, height),
@@ -31,23 +32,46 @@ static void set_walls(iso_layer_settings *s, const iso_options *options, bool fi
     };
 }
 
+static iso_fill_options fill_of(const iso_options *options, iso_role role, bool first,
+                                double height, double density) {
+    iso_fill_options fill = iso_fill_defaults(bead_of(options, role, first, height), density);
+    fill.angle = options->fill_angle;
+    fill.like.role = (uint8_t)role;
+    fill.like.rank = options->perimeters;
+    return fill;
+}
+
 /* Layers take turns of 90 degrees. At full density lines are fitted to each part; sparse ones keep
- * their place from layer to layer. A grid is two passes of half the density. */
+ * their place from layer to layer. A grid is two passes of half the density, both on every layer.
+ */
 static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                      double height) {
-    double density = options->fill_density / 100;
-    bool solid = density >= 1, grid = options->fill_pattern == ISO_PATTERN_GRID && !solid;
-    iso_role role = solid ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL;
-    iso_bead bead = bead_of(options, role, first, height);
-    double overlap = iso_options_infill_overlap(options);
-    s->wall.fill_inset = bead.spacing / 2 - iso_units(overlap);
-    s->fill_count = density <= 0 ? 0 : grid ? 2 : 1;
-    for (int32_t pass = 0; pass < s->fill_count; pass++) {
-        iso_fill_options *fill = &s->fill[pass];
-        *fill = iso_fill_defaults(bead, density / s->fill_count);
-        fill->angle = options->fill_angle + 90 * ((grid ? pass : index) & 1);
-        fill->like.rank = s->wall.count + pass;
+    double density = options->fill_density / 100, turn = 90 * (index & 1);
+    bool full = density >= 1, grid = options->fill_pattern == ISO_PATTERN_GRID && !full;
+    iso_role role = full ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL;
+    iso_bead solid = bead_of(options, ISO_ROLE_SOLID_INFILL, first, height);
+    s->top = fill_of(options, ISO_ROLE_TOP_SOLID_INFILL, first, height, 1);
+    s->solid = fill_of(options, ISO_ROLE_SOLID_INFILL, first, height, 1);
+    s->top.angle += turn;
+    s->solid.angle += turn;
+    s->sparse_count = density <= 0 ? 0 : grid ? 2 : 1;
+    for (int32_t pass = 0; pass < s->sparse_count; pass++) {
+        s->sparse[pass] = fill_of(options, role, first, height, density / s->sparse_count);
+        s->sparse[pass].angle += grid ? 90 * pass : turn;
+        s->sparse[pass].like.rank += pass;
     }
+    s->fill_inset = solid.spacing / 2;
+    s->wall.fill_inset = -iso_units(iso_options_infill_overlap(options));
+    s->shell = (iso_shell_options){.narrowest = full ? 2 * solid.spacing : solid.spacing,
+                                   .anchor = full ? 0 : 2 * solid.spacing};
+}
+
+void settings_shells(int32_t *top, int32_t *bottom, const iso_options *options) {
+    bool full = options->fill_density >= 100;
+    *top = options->top_solid_layers;
+    *bottom = full ? 0 : options->bottom_solid_layers;
+    if (full && *top > 1)
+        *top = 1;
 }
 
 void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_t index,

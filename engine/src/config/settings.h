@@ -4,13 +4,18 @@
 
 #include <isoslice/config.h>
 #include <isoslice/fill.h>
+#include <isoslice/shell.h>
 #include <isoslice/wall.h>
 
 /* What a layer's paths are made with. */
 typedef struct iso_layer_settings {
+    int32_t thinning; /* units by which outlines may be thinned */
     iso_wall_options wall;
-    int32_t fill_count; /* passes over the same area */
-    iso_fill_options fill[2];
+    int32_t fill_inset; /* units from the edge of a filled area to the middles of its lines */
+    iso_shell_options shell;
+    iso_fill_options top, solid;
+    int32_t sparse_count; /* passes over the same area */
+    iso_fill_options sparse[2];
     int32_t skirt_loops;    /* first layer only */
     int32_t skirt_distance; /* units, to the middle of the innermost loop */
     iso_bead skirt;
@@ -20,11 +25,12 @@ typedef struct iso_layer_settings {
 void settings_of_layer(iso_layer_settings *settings, const iso_options *options, int32_t index,
                        double height);
 
+/* Layers above and below that decide where a layer is solid. At full density only what is seen from
+ * above is told apart. */
+void settings_shells(int32_t *top, int32_t *bottom, const iso_options *options);
+
 /* Start and end texts must already be expanded and outlive the result. */
 iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
                                     int64_t timestamp);
-
-/* Units by which a section's contours may be thinned. */
-int32_t settings_thinning(const iso_options *options);
 
 #endif

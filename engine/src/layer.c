@@ -1,0 +1,194 @@
+#include "layer.h"
+
+#include <time.h>
+
+#include "planar/island.h"
+#include "planar/section.h"
+
+double iso_stage_clock(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+iso_status hand_new(iso_hand *hand) {
+    *hand = (iso_hand){0};
+    return iso_planar_scratch_new(&hand->planar);
+}
+
+void hand_free(iso_hand *hand) {
+    iso_planar_scratch_free(hand->planar);
+    iso_arena_free(&hand->arena);
+    iso_region_free(&hand->raw);
+    iso_region_free(&hand->island);
+    iso_region_free(&hand->inside);
+    iso_region_free(&hand->part);
+    iso_shell_free(&hand->shell);
+}
+
+void layer_free(iso_layer *layer) {
+    iso_region_free(&layer->region);
+    iso_region_free(&layer->area);
+    iso_paths_free(&layer->paths);
+    iso_release(layer->group);
+}
+
+/* Builds that check themselves check every region between the stages. */
+static iso_status check(const iso_region *region, iso_hand *hand) {
+#ifndef NDEBUG
+    return iso_region_validate(region, hand->planar);
+#else
+    return ISO_OK;
+#endif
+}
+
+/* ---- outline ---- */
+
+static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_slices *slices,
+                              int32_t model_count, int32_t index) {
+    iso_region_clear(&hand->raw);
+    for (int32_t m = 0; m < model_count; m++)
+        ISO_TRY(section_add(&hand->raw, &slices[m], index));
+    ISO_TRY(
+        iso_region_simplify(&layer->region, &hand->raw, layer->settings.thinning, hand->planar));
+    layer->square_mm = (double)iso_region_double_area(&layer->region) / 2 /
+                       ((double)ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
+    return check(&layer->region, hand);
+}
+
+/* Append an island's area to the layer's, and note whose it is. */
+static iso_status add_area(iso_layer *layer, const iso_region *inside, int32_t group) {
+    iso_region *area = &layer->area;
+    int32_t base = area->count;
+    ISO_TRY(ISO_GROW(layer->group, layer->group_capacity, (int64_t)base + inside->count));
+    for (int32_t c = 0; c < inside->count; c++) {
+        ISO_TRY(iso_region_add(area, inside->point + inside->first[c],
+                               inside->first[c + 1] - inside->first[c]));
+        area->parent[base + c] = inside->parent[c] < 0 ? -1 : base + inside->parent[c];
+        layer->group[base + c] = group;
+    }
+    return ISO_OK;
+}
+
+static iso_status make_walls(iso_layer *layer, iso_hand *hand) {
+    iso_islands islands;
+    ISO_TRY(islands_of(&islands, &layer->region, &hand->arena));
+    for (int32_t i = 0; i < islands.count; i++) {
+        iso_wall_options wall = layer->settings.wall;
+        wall.like.group = i;
+        ISO_TRY(island_copy(&hand->island, &layer->region, &islands, i));
+        ISO_TRY(iso_walls(&layer->paths, &hand->inside, &hand->island, &wall, hand->planar));
+        ISO_TRY(check(&hand->inside, hand));
+        ISO_TRY(add_area(layer, &hand->inside, i));
+    }
+    return ISO_OK;
+}
+
+iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *slices,
+                         int32_t model_count, int32_t index) {
+    const iso_layer_settings *settings = &layer->settings;
+    double begun = iso_stage_clock();
+    memset(layer->seconds, 0, sizeof layer->seconds);
+    iso_paths_clear(&layer->paths);
+    iso_region_clear(&layer->area);
+    ISO_TRY(make_region(layer, hand, slices, model_count, index));
+    double outlined = iso_stage_clock();
+    ISO_TRY(iso_skirt(&layer->paths, &layer->region, settings->skirt_loops,
+                      settings->skirt_distance, &settings->skirt, hand->planar));
+    iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
+    iso_status status = make_walls(layer, hand);
+    iso_arena_pop(&hand->arena, mark);
+    layer->seconds[ISO_STAGE_REGIONS] = outlined - begun;
+    layer->seconds[ISO_STAGE_WALLS] = iso_stage_clock() - outlined;
+    return status;
+}
+
+/* ---- fill ---- */
+
+/* The group of the part of the area that holds the point; a group of its own if rounding has put
+ * the point just outside of all. */
+static int32_t group_at(const iso_layer *layer, const iso_islands *areas, iso_hand *hand,
+                        iso_point point, int32_t otherwise, iso_status *status) {
+    for (int32_t i = 0; i < areas->count; i++) {
+        *status = island_copy(&hand->island, &layer->area, areas, i);
+        if (*status != ISO_OK)
+            return otherwise;
+        if (iso_region_locate(&hand->island, point) >= 0)
+            return layer->group[areas->contour[areas->first[i]]];
+    }
+    return otherwise;
+}
+
+typedef struct iso_filling {
+    iso_layer *layer;
+    iso_hand *hand;
+    const iso_islands *areas;
+} iso_filling;
+
+/* Inset each part of the region by half a spacing, for the middles of the lines, and fill it. */
+static iso_status fill_part(const iso_filling *f, const iso_region *part,
+                            const iso_fill_options *fill, int32_t count, int32_t group) {
+    iso_hand *hand = f->hand;
+    iso_offset_options inset = iso_offset_defaults(-f->layer->settings.fill_inset);
+    inset.join = ISO_JOIN_ROUND;
+    ISO_TRY(iso_offset(&hand->inside, part, &inset, hand->planar));
+    ISO_TRY(check(&hand->inside, hand));
+    for (int32_t pass = 0; pass < count; pass++) {
+        iso_fill_options grouped = fill[pass];
+        grouped.like.group = group;
+        ISO_TRY(iso_fill_rectilinear(&f->layer->paths, &hand->inside, &grouped, &hand->arena));
+    }
+    return ISO_OK;
+}
+
+static iso_status fill_region(const iso_filling *f, const iso_region *region,
+                              const iso_fill_options *fill, int32_t count) {
+    iso_hand *hand = f->hand;
+    iso_islands parts;
+    if (count == 0)
+        return ISO_OK;
+    ISO_TRY(islands_of(&parts, region, &hand->arena));
+    for (int32_t i = 0; i < parts.count; i++) {
+        int32_t outer = parts.contour[parts.first[i]];
+        iso_status status = ISO_OK;
+        int32_t group = region == &f->layer->area ? f->layer->group[outer]
+                                                  : group_at(f->layer, f->areas, hand,
+                                                             region->point[region->first[outer]],
+                                                             f->layer->region.count + i, &status);
+        ISO_TRY(status);
+        ISO_TRY(island_copy(&hand->part, region, &parts, i));
+        ISO_TRY(fill_part(f, &hand->part, fill, count, group));
+    }
+    return ISO_OK;
+}
+
+static iso_status fill_shelled(iso_layer *layer, iso_hand *hand) {
+    const iso_layer_settings *s = &layer->settings;
+    iso_islands areas;
+    ISO_TRY(islands_of(&areas, &layer->area, &hand->arena));
+    iso_filling filling = {layer, hand, &areas};
+    ISO_TRY(fill_region(&filling, &hand->shell.top, &s->top, 1));
+    ISO_TRY(fill_region(&filling, &hand->shell.solid, &s->solid, 1));
+    return fill_region(&filling, &hand->shell.sparse, s->sparse, s->sparse_count);
+}
+
+iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_shell_neighbours *around) {
+    const iso_layer_settings *s = &layer->settings;
+    double begun = iso_stage_clock();
+    bool shelled = (around->top > 0 || around->bottom > 0) && layer->area.count > 0;
+    if (shelled) {
+        ISO_TRY(iso_shell_split(&hand->shell, &layer->area, around, &s->shell, hand->planar));
+        ISO_TRY(check(&hand->shell.top, hand));
+        ISO_TRY(check(&hand->shell.solid, hand));
+        ISO_TRY(check(&hand->shell.sparse, hand));
+    }
+    double split = iso_stage_clock();
+    iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
+    iso_filling whole = {layer, hand, NULL};
+    iso_status status = shelled ? fill_shelled(layer, hand)
+                                : fill_region(&whole, &layer->area, s->sparse, s->sparse_count);
+    iso_arena_pop(&hand->arena, mark);
+    layer->seconds[ISO_STAGE_SHELLS] = split - begun;
+    layer->seconds[ISO_STAGE_FILL] = iso_stage_clock() - split;
+    return status;
+}
