@@ -556,7 +556,37 @@ static void test_validate_names_what_is_wrong(void) {
     shape_free(&s);
 }
 
+/* A fan of many triangles around one vertex, at either end of the numbering, in any order. */
+static void test_hubs(void) {
+    enum { N = 20000 };
+    for (int round = 0; round < 3; round++) {
+        shape s = {0};
+        for (int i = 0; i < N; i++) {
+            double u = 2 * SHAPE_PI * i / N, w = 2 * SHAPE_PI * ((i + 1) % N) / N;
+            shape_point a = {1e3 * cos(u), 1e3 * sin(u), 0}, b = {1e3 * cos(w), 1e3 * sin(w), 0};
+            shape_add(&s, (shape_point){0, 0, 5}, a, b);
+            shape_add(&s, b, a, (shape_point){0, 0, -5});
+        }
+        if (round == 1)
+            shape_shuffle(&s, 1);
+        if (round == 2) { /* a second dart on hub edges that have their pair */
+            shape_repeat(&s, 2 * 777);
+            shape_remove(&s, 2 * 5000);
+        }
+        iso_mesh mesh;
+        if (mend(&mesh, &s, SHAPE_PI * 1e7 / 3)) {
+            CHECK_EQUAL(round == 2 ? 6 : 0, mesh.defects.bad_edges);
+            CHECK_EQUAL(round == 2, mesh.defects.duplicate);
+            CHECK_EQUAL(round == 2, mesh.defects.holes_closed);
+            CHECK_EQUAL(2 * N, mesh.triangle_count);
+            iso_mesh_free(&mesh);
+        }
+        shape_free(&s);
+    }
+}
+
 int main(void) {
+    RUN(test_hubs);
     RUN(test_sound_meshes_are_left_alone);
     RUN(test_cube_less_any_triangle);
     RUN(test_box_without_lid_is_refused);

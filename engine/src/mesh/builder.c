@@ -3,7 +3,12 @@
 #include "base/memory.h"
 #include "mesh/repair.h"
 
-enum { BATCH = 64, TABLE_LEAST = 1 << 10 };
+enum {
+    BATCH = 64,
+    TABLE_LEAST = 1 << 10,
+    CROWD_LEAST = 1 << 9,
+    LIST_LONGEST = 48 /* edges; beyond, walking the list would make a fan quadratic */
+};
 
 /* Links of a list, while opposite[] holds them: never confused with a dart, which is >= 0. */
 static inline int32_t link_to(int32_t dart) {
@@ -48,6 +53,44 @@ static iso_status table_resize(iso_mesh_builder *b, int64_t size) {
     return ISO_OK;
 }
 
+static inline uint64_t edge_hash(int32_t low, int32_t high) {
+    uint64_t key = ((uint64_t)(uint32_t)low << 32 | (uint32_t)high) * 0x9E3779B97F4A7C15u;
+    key = (key ^ key >> 32) * 0xD6E8FEB86659FD93u;
+    return key ^ key >> 32;
+}
+
+/* The slot of the edge between two vertices, or the empty one where it belongs. */
+static int32_t *crowd_slot(int32_t *crowd, int64_t size, const int32_t *origin, int32_t low,
+                           int32_t high) {
+    uint64_t mask = (uint64_t)size - 1;
+    for (uint64_t slot = edge_hash(low, high) & mask;; slot = (slot + 1) & mask) {
+        int32_t e = crowd[slot];
+        if (e < 0)
+            return &crowd[slot];
+        int32_t u = origin[e], w = origin[iso_mesh_alpha(e)];
+        if ((u == low && w == high) || (u == high && w == low))
+            return &crowd[slot];
+    }
+}
+
+static iso_status crowd_resize(iso_mesh_builder *b, int64_t size) {
+    int32_t *crowd;
+    const int32_t *origin = b->mesh.origin;
+    ISO_TRY(ISO_ALLOCATE(crowd, size));
+    memset(crowd, 0xff, (size_t)size * sizeof *crowd);
+    for (int64_t i = 0; i < b->crowd_size; i++) {
+        int32_t e = b->crowd[i];
+        if (e < 0)
+            continue;
+        int32_t u = origin[e], w = origin[iso_mesh_alpha(e)];
+        *crowd_slot(crowd, size, origin, u < w ? u : w, u < w ? w : u) = e;
+    }
+    iso_release(b->crowd);
+    b->crowd = crowd;
+    b->crowd_size = size;
+    return ISO_OK;
+}
+
 /* Room for a batch, so that the loops over corners cannot fail. */
 static iso_status reserve(iso_mesh_builder *b, int64_t triangles) {
     int64_t darts = 3 * (b->mesh.triangle_count + triangles);
@@ -60,6 +103,8 @@ static iso_status reserve(iso_mesh_builder *b, int64_t triangles) {
     ISO_TRY(ISO_GROW(b->head, b->head_capacity, vertices));
     if (vertices > b->table_size / 4 * 3)
         ISO_TRY(table_resize(b, 2 * b->table_size));
+    if (b->crowd_count + 3 * triangles > b->crowd_size / 2)
+        ISO_TRY(crowd_resize(b, b->crowd_size ? 2 * b->crowd_size : CROWD_LEAST));
     return ISO_OK;
 }
 
@@ -91,6 +136,7 @@ void iso_mesh_builder_discard(iso_mesh_builder *b) {
     iso_mesh_free(&b->mesh);
     iso_release(b->head);
     iso_release(b->table);
+    iso_release(b->crowd);
     *b = (iso_mesh_builder){0};
 }
 
@@ -125,28 +171,51 @@ static inline int32_t weld(iso_mesh_builder *b, corner at, uint64_t hash) {
     }
 }
 
-/* Find the partner of `dart`, which runs from u to w, among the edges of the lower vertex. A
- * matched edge stays listed, so that further darts on it are noticed: opposite[first dart] is the
- * second, and opposite[second] carries the list on. */
+/* `dart` starts at u; `e` is the first dart of the same edge. A matched edge stays known, so that
+ * further darts on it are noticed: opposite[first dart] is the second, and opposite[second] carries
+ * the list on. */
+static inline void match(iso_mesh_builder *b, int32_t dart, int32_t u, int32_t e) {
+    int32_t *opposite = b->mesh.opposite;
+    if (opposite[e] < 0 && b->mesh.origin[e] != u) {
+        opposite[dart] = opposite[e];
+        opposite[e] = dart;
+        b->open--;
+    } else {
+        opposite[dart] = link_to(-1);
+        b->excess++;
+    }
+}
+
+static void link_in_crowd(iso_mesh_builder *b, int32_t dart, int32_t u, int32_t low, int32_t high) {
+    int32_t *slot = crowd_slot(b->crowd, b->crowd_size, b->mesh.origin, low, high);
+    if (*slot >= 0) {
+        match(b, dart, u, *slot);
+        return;
+    }
+    *slot = dart;
+    b->crowd_count++;
+    b->mesh.opposite[dart] = link_to(-1);
+    b->open++;
+}
+
+/* Find the partner of `dart`, which runs from u to w, among the edges of the lower vertex. */
 static inline void link_dart(iso_mesh_builder *b, int32_t dart, int32_t u, int32_t w) {
     int32_t *opposite = b->mesh.opposite;
     const int32_t *origin = b->mesh.origin;
     int32_t low = u < w ? u : w, high = u < w ? w : u;
-    for (int32_t e = b->head[low]; e >= 0;) {
+    int length = 0;
+    for (int32_t e = b->head[low]; e >= 0; length++) {
         int32_t mate = opposite[e], from = origin[e];
         int32_t far = from == low ? origin[iso_mesh_alpha(e)] : from;
         if (far == high) {
-            if (mate < 0 && from == w) {
-                opposite[dart] = mate;
-                opposite[e] = dart;
-                b->open--;
-            } else {
-                opposite[dart] = link_to(-1);
-                b->excess++;
-            }
+            match(b, dart, u, e);
             return;
         }
         e = link_target(mate >= 0 ? opposite[mate] : mate);
+    }
+    if (length == LIST_LONGEST) {
+        link_in_crowd(b, dart, u, low, high);
+        return;
     }
     opposite[dart] = link_to(b->head[low]);
     b->head[low] = dart;
@@ -227,7 +296,8 @@ iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b) {
     resolve(&b->mesh);
     iso_release(b->head);
     iso_release(b->table);
-    b->head = b->table = NULL;
+    iso_release(b->crowd);
+    b->head = b->table = b->crowd = NULL;
     iso_status status = iso_mesh_repair(&b->mesh, b->open, b->excess);
     if (status == ISO_OK) {
         *mesh = b->mesh;

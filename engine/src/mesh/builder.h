@@ -2,7 +2,8 @@
  *
  * Welding is exact, on the bits of the floats (-0 is 0), and vertices are numbered as they first
  * occur, so nothing depends on the hash. Opposite darts are found on the fly: each vertex keeps a
- * list of the edges whose lower end it is, and the lists live in the opposite array itself. */
+ * short list of the edges whose lower end it is, and the lists live in the opposite array itself.
+ * Further edges of a hub, the middle of a fan, go to a hash table. */
 #ifndef ISO_MESH_BUILDER_H
 #define ISO_MESH_BUILDER_H
 
@@ -23,6 +24,8 @@ typedef struct iso_mesh_builder {
     int32_t *head;                              /* [vertex] first edge of its list, or -1 */
     int32_t *table;                             /* [table_size] open addressing: vertex or -1 */
     int64_t table_size;                         /* a power of two */
+    int32_t *crowd;                             /* [crowd_size] first darts of hubs' edges, or -1 */
+    int64_t crowd_size, crowd_count;            /* a power of two, at least twice the count */
     int64_t open;                               /* edges with one dart */
     int64_t excess;                             /* darts whose edge had its pair already */
 } iso_mesh_builder;
