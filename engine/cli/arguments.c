@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "config/notes.h"
 #include "config/spelling.h"
 #include "config/value.h"
 
@@ -196,6 +197,7 @@ static iso_status read_setting(iso_arguments *arguments, const char *text) {
     while (length > 0 && key[length - 1] == ' ')
         key[--length] = 0;
     const char *value = text + strcspn(text, "=") + 1;
+    iso_notes_drop_unused(&arguments->notes, key);
     return iso_options_set(&arguments->options, key, value + strspn(value, " "), "-s");
 }
 
@@ -297,6 +299,7 @@ static iso_status read_option(iso_arguments *arguments, const argument *given) {
     if (given->negated && given->value)
         return iso_fail(ISO_USAGE, "%s: takes no value", given->written);
     const char *value = given->value ? given->value : given->negated ? "0" : "1";
+    iso_notes_drop_unused(&arguments->notes, iso_option_at(given->index)->key);
     return iso_options_set(&arguments->options, iso_option_at(given->index)->key, value,
                            given->written);
 }

@@ -12,7 +12,7 @@ iso_status iso_warnings_add(iso_report *report, const iso_config_notes *notes) {
                                 notes->unknown));
     if (notes->unused_count > 0)
         ISO_TRY(iso_report_warn(report, "setting-not-followed",
-                                "not known, so the usual value stays: %s", notes->unused));
+                                "not followed, for isoslice doesn't know it: %s", notes->unused));
     return ISO_OK;
 }
 

@@ -257,6 +257,8 @@ class Cli(unittest.TestCase):
         report = json.loads((self.at / "report.json").read_text())
         self.assertEqual(["unknown-setting", "setting-not-followed"],
                          [w["code"] for w in report["warnings"]])
+        done = self.run_it("part.stl", "-c", "prusa.ini", "--fill-pattern", "grid")
+        self.assertNotIn(b"fill_pattern", done.stderr)
         self.fails(6, "wipe, spiral_vase", "part.stl", "-c", "prusa.ini", "--strict", "-o", "x.gcode")
         done = self.run_it("contours", "part.stl", "-o", "part.svg", "-c", "prusa.ini")
         self.assertIn(b"wipe, spiral_vase", done.stderr)

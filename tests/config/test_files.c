@@ -65,6 +65,21 @@ static void test_unknown_keys_and_words_are_noted_once(void) {
     CHECK_EQUAL(ISO_PATTERN_RECTILINEAR, options.fill_pattern);
 }
 
+static void test_a_word_that_is_replaced_later_is_not_noted(void) {
+    CHECK_OK(read_ini("fill_pattern = cubic\ngcode_flavor = reprap\nfill_pattern = gyroid\n"));
+    CHECK_EQUAL(2, notes.unused_count);
+    CHECK(strcmp(notes.unused, "gcode_flavor = reprap, fill_pattern = gyroid") == 0);
+    CHECK_OK(read_ini("gcode_flavor = reprap\nfill_pattern = cubic\nfill_pattern = grid\n"));
+    CHECK(strcmp(notes.unused, "gcode_flavor = reprap") == 0);
+    CHECK_OK(read_ini("fill_pattern = a,b\ngcode_flavor = reprap\nfill_pattern = grid\n"));
+    CHECK(strcmp(notes.unused, "gcode_flavor = reprap") == 0);
+    CHECK_OK(read_ini("gcode_flavor = fill_pattern\nfill_pattern = grid\n"));
+    CHECK(strcmp(notes.unused, "gcode_flavor = fill_pattern") == 0);
+    CHECK_OK(read_ini("fill_pattern = cubic\nfill_pattern = grid\n"));
+    CHECK_EQUAL(0, notes.unused_count);
+    CHECK(strcmp(notes.unused, "") == 0);
+}
+
 static void test_of_one_value_per_extruder_the_first_counts(void) {
     CHECK_OK(read_ini("temperature = 215,230\nnozzle_diameter = 0.6,0.4,0.4\n"
                       "machine_max_acceleration_extruding = 1250,1500\ncooling = 0,1\n"));
@@ -241,6 +256,7 @@ int main(void) {
     RUN(test_a_flat_file_is_read);
     RUN(test_an_empty_file_changes_nothing);
     RUN(test_unknown_keys_and_words_are_noted_once);
+    RUN(test_a_word_that_is_replaced_later_is_not_noted);
     RUN(test_of_one_value_per_extruder_the_first_counts);
     RUN(test_failures_name_file_and_line_and_change_nothing);
     RUN(test_sections_of_a_bundle_are_chosen_by_name);

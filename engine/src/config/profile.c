@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "config/ini.h"
+#include "config/notes.h"
 #include "config/value.h"
 
 enum {
@@ -19,34 +20,6 @@ typedef struct reader {
     const char *path;
     iso_ini ini;
 } reader;
-
-/* ---- notes ---- */
-
-/* Add to a comma-separated list, unless it's there. */
-static void note(char *list, size_t size, int32_t *count, const char *entry) {
-    size_t length = strlen(list), added = strlen(entry);
-    for (const char *at = list; (at = strstr(at, entry)); at++) {
-        bool begins = at == list || at[-1] == ' ';
-        bool ends = at[added] == 0 || at[added] == ',';
-        if (begins && ends)
-            return;
-    }
-    ++*count;
-    if (length + added + 3 <= size)
-        snprintf(list + length, size - length, "%s%s", length > 0 ? ", " : "", entry);
-}
-
-static void note_unknown(iso_config_notes *notes, const char *key) {
-    char entry[64];
-    snprintf(entry, sizeof entry, "%.60s", key);
-    note(notes->unknown, sizeof notes->unknown, &notes->unknown_count, entry);
-}
-
-static void note_unused(iso_config_notes *notes, const char *key, const char *value) {
-    char entry[128];
-    snprintf(entry, sizeof entry, "%.48s = %.60s", key, value);
-    note(notes->unused, sizeof notes->unused, &notes->unused_count, entry);
-}
 
 /* ---- lines ---- */
 
@@ -66,13 +39,14 @@ static iso_status apply_line(reader *from, const iso_ini_line *line) {
     int32_t option = iso_option_find(line->key);
     if (option < 0) {
         if (strcmp(line->key, "inherits") != 0 && strcmp(line->key, "prusaslicer_config") != 0)
-            note_unknown(from->notes, line->key);
+            iso_notes_add_unknown(from->notes, line->key);
         return ISO_OK;
     }
     if (iso_option_word(option, 0) && !has_word(option, line->value)) {
-        note_unused(from->notes, line->key, line->value);
+        iso_notes_add_unused(from->notes, line->key, line->value);
         return ISO_OK;
     }
+    iso_notes_drop_unused(from->notes, line->key);
     char where[NAME_SIZE + 16], first[64];
     snprintf(where, sizeof where, line->number > 0 ? "%.255s:%d" : "%.255s", from->path,
              line->number);
@@ -107,7 +81,7 @@ static iso_status apply_parents(reader *from, const char *child, const iso_ini_l
         if (parent >= 0)
             ISO_TRY(apply_section(from, parent, depth + 1));
         else
-            note_unused(from->notes, line->key, name);
+            iso_notes_add_unused(from->notes, line->key, name);
         at += length;
     }
     return ISO_OK;
@@ -126,16 +100,38 @@ static iso_status apply_section(reader *from, int32_t index, int depth) {
     return ISO_OK;
 }
 
-/* Sections that may be chosen, as a hint: not the abstract ones. */
-static iso_status fail_choice(const reader *from, const char *missing) {
-    char names[512] = "";
+static const char *const section_type[] = {"printer", "filament", "print"};
+enum { TYPE_COUNT = sizeof section_type / sizeof *section_type };
+
+static bool may_choose(const char *section, const char *type) {
+    size_t length = strlen(type);
+    return strncmp(section, type, length) == 0 && section[length] == ':' && !strchr(section, '*');
+}
+
+/* What may be chosen, as a hint: of `type`, or of all if that is NULL. */
+static void list_choices(char *names, size_t size, const reader *from, const char *type) {
     size_t length = 0;
-    for (int32_t i = 1; i < from->ini.section_count && length < 400; i++) {
+    names[0] = 0;
+    for (int32_t i = 1; i < from->ini.section_count; i++) {
         const char *name = from->ini.section[i].name;
-        if (strchr(name, ':') && !strchr(name, '*') && strlen(name) < 80)
-            length += (size_t)snprintf(names + length, sizeof names - length, "%s%s",
-                                       length > 0 ? ", " : "", name);
+        bool fits = false;
+        for (int t = 0; t < TYPE_COUNT; t++)
+            fits = fits || ((!type || strcmp(type, section_type[t]) == 0) &&
+                            may_choose(name, section_type[t]));
+        if (!fits)
+            continue;
+        if (length + strlen(name) + 8 > size) {
+            snprintf(names + length, size - length, ", ...");
+            return;
+        }
+        length +=
+            (size_t)snprintf(names + length, size - length, "%s%s", length > 0 ? ", " : "", name);
     }
+}
+
+static iso_status fail_choice(const reader *from, const char *missing, const char *type) {
+    char names[512];
+    list_choices(names, sizeof names, from, type);
     if (missing)
         return iso_fail(ISO_BAD_CONFIG, "%s: has no section [%s]; it has %s", from->path, missing,
                         names);
@@ -148,11 +144,8 @@ static iso_status apply_named(reader *from, const char *type, const char *name, 
     char section[NAME_SIZE];
     snprintf(section, sizeof section, "%s:%.*s", type, (int)length, name);
     int32_t index = iso_ini_find(&from->ini, section);
-    return index < 0 ? fail_choice(from, section) : apply_section(from, index, 0);
+    return index < 0 ? fail_choice(from, section, type) : apply_section(from, index, 0);
 }
-
-static const char *const section_type[] = {"printer", "filament", "print"};
-enum { TYPE_COUNT = sizeof section_type / sizeof *section_type };
 
 /* The sections that [presets] of a bundle names, a missing one being a preset of the system. */
 static iso_status apply_presets(reader *from, int32_t presets) {
@@ -170,7 +163,7 @@ static iso_status apply_presets(reader *from, int32_t presets) {
             applied++;
         }
     }
-    return applied > 0 ? ISO_OK : fail_choice(from, NULL);
+    return applied > 0 ? ISO_OK : fail_choice(from, NULL, NULL);
 }
 
 /* The first of ":printer:", ":filament:", ":print:" in the text; NULL if there is none. */
@@ -204,7 +197,7 @@ static iso_status apply_file(reader *from, const char *choice) {
     int32_t presets = iso_ini_find(&from->ini, "presets");
     if (choice || from->ini.section_count == 1)
         return apply_choices(from, choice);
-    return presets >= 0 ? apply_presets(from, presets) : fail_choice(from, NULL);
+    return presets >= 0 ? apply_presets(from, presets) : fail_choice(from, NULL, NULL);
 }
 
 iso_status iso_options_read(iso_options *options, const char *path, iso_config_notes *notes) {
