@@ -205,9 +205,9 @@ static iso_status fill_task(void *payload, int64_t number, int worker) {
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
     ISO_TRY(ISO_PUSH(region, &hand->arena, around.above_count + around.below_count));
     for (int32_t i = 0; i < around.above_count; i++)
-        region[i] = &layer_at(job, index + 1 + i)->region;
+        region[i] = &layer_at(job, index + 1 + i)->coarse;
     for (int32_t i = 0; i < around.below_count; i++)
-        region[around.above_count + i] = &layer_at(job, index - 1 - i)->region;
+        region[around.above_count + i] = &layer_at(job, index - 1 - i)->coarse;
     around.above = region;
     around.below = region + around.above_count;
     iso_status status = layer_fill(layer_at(job, index), hand, &around);

@@ -28,6 +28,7 @@ void hand_free(iso_hand *hand) {
 
 void layer_free(iso_layer *layer) {
     iso_region_free(&layer->region);
+    iso_region_free(&layer->coarse);
     iso_region_free(&layer->area);
     iso_paths_free(&layer->paths);
     iso_release(layer->group);
@@ -53,7 +54,9 @@ static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_slices
         iso_region_simplify(&layer->region, &hand->raw, layer->settings.thinning, hand->planar));
     layer->square_mm = (double)iso_region_double_area(&layer->region) / 2 /
                        ((double)ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
-    return check(&layer->region, hand);
+    ISO_TRY(check(&layer->region, hand));
+    return iso_region_simplify(&layer->coarse, &layer->region, layer->settings.shell.narrowest / 4,
+                               hand->planar);
 }
 
 /* Append an island's area to the layer's, and note whose it is. */

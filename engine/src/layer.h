@@ -30,6 +30,7 @@ double iso_stage_clock(void); /* seconds, from some fixed time on */
 typedef struct iso_layer {
     iso_layer_settings settings;
     iso_region region; /* the outline */
+    iso_region coarse; /* the same thinned, for the shells of its neighbours */
     iso_region area;   /* within the walls: island by island, the outer contour first */
     int32_t *group;    /* [area.count] island of `region` that each contour lies in */
     int64_t group_capacity;

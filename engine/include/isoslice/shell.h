@@ -8,8 +8,8 @@
 #include <isoslice/planar.h>
 #include <isoslice/status.h>
 
-/* The outlines around a layer, nearest first. Layers beyond the top or the bed are not listed, and
- * count as empty. */
+/* The outlines around a layer, nearest first; coarse ones do, and cost less. Layers beyond the top
+ * or the bed are not listed, and count as empty. */
 typedef struct iso_shell_neighbours {
     const iso_region *const *above; /* [above_count], at most `top` */
     const iso_region *const *below; /* [below_count], at most `bottom` */
