@@ -40,11 +40,26 @@ static double join_gap(iso_point v, arm in, arm out, const iso_offset_options *o
     return mitred ? gap : fmax(gap, ahead - distance);
 }
 
+/* An island that shrinks away may take its joins with it, and so may a hole that is grown over:
+ * what their mitres cut from the parts behind them is no one's wish. */
+static int may_vanish(const iso_region *region, int32_t i, double distance) {
+    double x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY, area = 0;
+    for (int32_t k = 0; k < corners(region, i); k++) {
+        iso_point p = corner(region, i, k), q = corner(region, i, k + 1);
+        x0 = fmin(x0, p.x), x1 = fmax(x1, p.x);
+        y0 = fmin(y0, p.y), y1 = fmax(y1, p.y);
+        area += (double)p.x * q.y - (double)p.y * q.x;
+    }
+    return (area > 0) == (distance < 0) && fmin(x1 - x0, y1 - y0) <= 2 * fabs(distance);
+}
+
 static int in_a_join(const iso_region *region, const iso_offset_options *options, iso_point p,
                      double allowed, int generous) {
     int grows = options->distance > 0;
     double reach = fabs((double)options->distance) * fmax(options->mitre_limit, 1.5) + 10;
-    for (int32_t i = 0; i < region->count; i++)
+    for (int32_t i = 0; i < region->count; i++) {
+        if (!generous && may_vanish(region, i, options->distance))
+            continue;
         for (int32_t k = 0; k < corners(region, i); k++) {
             iso_point v = corner(region, i, k);
             if (fabs((double)p.x - v.x) > reach || fabs((double)p.y - v.y) > reach)
@@ -57,19 +72,20 @@ static int in_a_join(const iso_region *region, const iso_offset_options *options
             if (join_gap(v, in, out, options, p, generous) <= allowed)
                 return 1;
         }
+    }
     return 0;
 }
 
 int oracle_offset(const iso_region *region, const iso_offset_options *options, iso_point p) {
     int grows = options->distance > 0, round = options->join == ISO_JOIN_ROUND;
     int64_t distance = grows ? options->distance : -(int64_t)options->distance;
-    int64_t sure = distance - SLACK - (round ? options->arc_tolerance : 0);
+    int64_t off = SLACK + (round ? options->arc_tolerance : 0); /* on either side of the arc */
     int in = oracle_winding(region, p, NULL) != 0;
     if (grows ? in : !in) /* the side that spreads */
         return oracle_near(region, p, SLACK) ? 0 : grows ? 1 : -1;
-    if (oracle_near(region, p, sure))
+    if (oracle_near(region, p, distance - off))
         return grows ? 1 : -1;
-    if (oracle_near(region, p, distance + SLACK))
+    if (oracle_near(region, p, distance + off))
         return 0;
     if (round || !in_a_join(region, options, p, SLACK, 1))
         return grows ? -1 : 1;

@@ -4,10 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "oracle.h"
 
-enum { SMALL = 400, SHRINK_TRIES = 4000 };
+enum { SMALL = 400, SHRINK_TRIES = 4000, SHRINK_SECONDS = 20 };
 
 iso_planar_scratch *scratch;
 
@@ -115,6 +116,8 @@ static void copy_without(iso_region *out, const iso_region *in, int32_t contour,
     free(point);
 }
 
+static time_t deadline;
+
 /* Drop runs of points, long ones first, from one operand. Returns whether anything went. */
 static int shrink_operand(planar_case *c, iso_region *operand, property *holds, int *tries) {
     iso_region fewer = {0}, kept = *operand;
@@ -122,6 +125,8 @@ static int shrink_operand(planar_case *c, iso_region *operand, property *holds, 
     for (int32_t i = 0; i<kept.count && * tries> 0; i++)
         for (int32_t run = corners(&kept, i); run > 0; run /= 2)
             for (int32_t k = 0; i < kept.count && k < corners(&kept, i) && *tries > 0;) {
+                if (time(NULL) > deadline)
+                    *tries = 1;
                 --*tries;
                 copy_without(&fewer, &kept, i, k, run);
                 *operand = fewer;
@@ -159,6 +164,7 @@ static void report(const char *name, planar_case *c, property *holds) {
     fprintf(stderr, "%s, case %lld (%s, %d + %d points): %s\n", name, (long long)c->index, c->kind,
             point_count(&c->a), point_count(&c->b), holds(c));
     int tries = SHRINK_TRIES;
+    deadline = time(NULL) + SHRINK_SECONDS;
     while (tries > 0 &&
            (shrink_operand(c, &c->a, holds, &tries) | shrink_operand(c, &c->b, holds, &tries))) {
     }

@@ -220,15 +220,19 @@ static void one_broken_point_in_thousands(void) {
 /* --- range --- */
 
 static void out_of_range(void) {
-    static const iso_point beyond[] = {{ISO_COORDINATE_MAX + 1, 0}, {0, -ISO_COORDINATE_MAX - 1},
-                                       {INT32_MAX, INT32_MAX},      {INT32_MIN, 0},
-                                       {INT32_MIN, INT32_MIN},      {0, INT32_MAX}};
+    enum { M = ISO_COORDINATE_MAX };
+    static const iso_point beyond[][3] = {{{0, -100}, {M + 1, 0}, {0, 100}},
+                                          {{100, 0}, {-100, 0}, {0, -M - 1}},
+                                          {{100, 0}, {INT32_MAX, INT32_MAX}, {0, 100}},
+                                          {{0, 100}, {INT32_MIN, 0}, {0, -100}},
+                                          {{0, 100}, {INT32_MIN, INT32_MIN}, {100, 0}},
+                                          {{-100, 0}, {100, 0}, {0, INT32_MAX}}};
     iso_region in = {0}, out = {0}, good = {0};
     iso_offset_options options = iso_offset_defaults(100);
     add_box(&good, 0, 0, 100, 100);
     for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
         iso_region_clear(&in);
-        must_add(&in, (iso_point[]){{-100, 0}, {0, -100}, {100, 100}, beyond[i]}, 4);
+        must_add(&in, beyond[i], 3);
         CHECK_STATUS(ISO_OUTSIDE, iso_region_clean(&out, &in, ISO_FILL_NONZERO, scratch));
         CHECK_EQUAL(0, out.count);
         CHECK_STATUS(ISO_OUTSIDE, iso_boolean(&out, ISO_UNION, &good, &in, scratch));
@@ -299,6 +303,8 @@ static iso_status thin(iso_region *out, const iso_region *a, const iso_region *b
         status = iso_region_simplify(out, &region, 300, own);
     if (status == ISO_OK)
         status = iso_region_validate(out, own);
+    if (status != ISO_OK)
+        iso_region_clear(out); /* validation failed, not the operation */
     iso_region_free(&region);
     return status;
 }
