@@ -203,7 +203,6 @@ class Cli(unittest.TestCase):
         self.fails(3, "empty.stl", "empty.stl")
         (self.at / "cut.stl").write_bytes((self.at / "part.stl").read_bytes()[:300])
         self.fails(3, "cut.stl", "cut.stl")
-        self.fails(3, "missing.ini", "part.stl", "-c", "missing.ini")
 
     def test_what_can_not_be_sliced_truthfully(self):
         write_stl(self.at / "sheet.stl", box((0, 0, 0), (20, 20, 20))[:2])
@@ -219,6 +218,7 @@ class Cli(unittest.TestCase):
                    "part.stl", "--fill-pattern", "stars")
         self.fails(6, "nozzle_diameter = 0.4", "part.stl", "--layer-height", "0.5")
         self.write("bad.ini", "perimeters = 2\nlayer_height = x\n")
+        self.fails(6, "missing.ini", "part.stl", "-c", "missing.ini")
         self.fails(6, "bad.ini:2: layer_height = x is not a number", "part.stl", "-c", "bad.ini")
         self.fails(6, "placeholder [wibble]", "part.stl", "--start-gcode", "G28 [wibble]")
 

@@ -103,9 +103,9 @@ static void test_failures_name_file_and_line_and_change_nothing(void) {
     expect_failure(ISO_BAD_CONFIG, ".ini:1: = 5", "= 5\n");
     expect_failure(ISO_BAD_CONFIG, ".ini:2: perimeters = x is not a number",
                    "layer_height = 0.1\nperimeters = x");
-    CHECK_STATUS(ISO_UNREADABLE, iso_options_read(&options, "no-such-file.ini", &notes));
+    CHECK_STATUS(ISO_BAD_CONFIG, iso_options_read(&options, "no-such-file.ini", &notes));
     CHECK(strncmp(iso_error_message(), "no-such-file.ini: ", 18) == 0);
-    CHECK_STATUS(ISO_UNREADABLE, iso_options_read(&options, "/", &notes));
+    CHECK_STATUS(ISO_BAD_CONFIG, iso_options_read(&options, "/", &notes));
     write_file(".ini", "layer_height = 0.2\n\0\0\0", 22);
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_read(&options, path, &notes));
     unlink(path);

@@ -121,8 +121,7 @@ typedef struct iso_config_notes {
  * Of a bundle, `path` says which sections to take, as "bundle.ini:print:0.20mm:filament:PLA"; else
  * its [presets] section does. What a section `inherits` comes before it. Later lines win. A list
  * where a number is due, one value per extruder, gives its first. Notes are added to `notes`.
- * ISO_UNREADABLE: no such file; ISO_BAD_CONFIG: names file and line. On failure the options are as
- * before. */
+ * ISO_BAD_CONFIG, naming file and line; the options then are as before. */
 ISO_API iso_status iso_options_read(iso_options *options, const char *path,
                                     iso_config_notes *notes) ISO_MUST_CHECK;
 

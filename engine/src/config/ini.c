@@ -27,7 +27,7 @@ int32_t iso_ini_find(const iso_ini *ini, const char *name) {
 }
 
 static iso_status unreadable(const char *path) {
-    return iso_fail(ISO_UNREADABLE, "%s: can't be read: %s", path, strerror(errno));
+    return iso_fail(ISO_BAD_CONFIG, "%s: can't be read: %s", path, strerror(errno));
 }
 
 /* The last TAIL_SIZE bytes of a file. *whole tells whether that is all of it. */

@@ -24,7 +24,7 @@ typedef struct iso_ini {
     int64_t line_capacity, section_capacity;
 } iso_ini;
 
-/* ISO_UNREADABLE, or ISO_BAD_CONFIG naming file and line. */
+/* ISO_BAD_CONFIG, naming file and line. */
 iso_status iso_ini_read(iso_ini *ini, const char *path) ISO_MUST_CHECK;
 void iso_ini_free(iso_ini *ini);
 /* The number of a section by its name, or -1. */

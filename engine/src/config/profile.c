@@ -205,7 +205,7 @@ iso_status iso_options_read(iso_options *options, const char *path, iso_config_n
     const char *type, *choice = access(path, F_OK) == 0 ? NULL : find_choice(path, &type);
     size_t length = choice ? (size_t)(choice - path) : strlen(path);
     if (length >= sizeof file)
-        return iso_fail(ISO_UNREADABLE, "%.60s...: the name is too long", path);
+        return iso_fail(ISO_BAD_CONFIG, "%.60s...: the name is too long", path);
     memcpy(file, path, length);
     file[length] = 0;
     iso_options changed = *options;
