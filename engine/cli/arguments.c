@@ -350,6 +350,17 @@ static iso_status check_notes(const iso_arguments *arguments) {
     return ISO_OK;
 }
 
+/* "slcie part.stl": the first file isn't there, and it looks like a verb. */
+static iso_status check_verb(const iso_arguments *arguments) {
+    const char *first = arguments->file_count > 0 ? arguments->file[0] : "";
+    if (arguments->verb_given || !*first || strpbrk(first, "./") || access(first, F_OK) == 0)
+        return ISO_OK;
+    for (int v = 0; v < ISO_VERB_COUNT; v++)
+        if (iso_edit_distance(iso_verb_name(v), first) <= iso_edit_tolerance(first))
+            return iso_fail(ISO_USAGE, "there is no verb %s; is it %s?", first, iso_verb_name(v));
+    return ISO_OK;
+}
+
 iso_status iso_arguments_read(iso_arguments *arguments, int argc, char **argv) {
     *arguments = (iso_arguments){.travels = true, .progress = isatty(STDERR_FILENO) == 1};
     iso_options_defaults(&arguments->options);
@@ -365,6 +376,7 @@ iso_status iso_arguments_read(iso_arguments *arguments, int argc, char **argv) {
         ISO_TRY(read_phase(arguments, along, p));
     if (arguments->page != ISO_PAGE_NONE)
         return ISO_OK;
+    ISO_TRY(check_verb(arguments));
     ISO_TRY(check_notes(arguments));
     return iso_options_check(&arguments->options);
 }

@@ -180,6 +180,7 @@ class Cli(unittest.TestCase):
 
     def test_usage(self):
         self.fails(2, "no model given")
+        self.fails(2, "there is no verb contuors; is it contours?", "contuors", "part.stl")
         self.fails(2, "is it --layer-height?", "--layer-hieght", "0.2", "part.stl")
         self.fails(2, "is it --threads?", "--thread", "2", "part.stl")
         self.fails(2, "there is no flag --wibble", "part.stl", "--wibble")
