@@ -216,15 +216,12 @@ static void man_options(void) {
         printf(".TP\n");
         print_roff(flag_name(name, info->key));
         print_roff(info->help);
-        if (*range) {
-            printf("(%s%s%s%s", range, *info->unit ? " " : "", unit_of(unit, info),
-                   *info->initial ? "; default " : "");
+        char text[256];
+        snprintf(text, sizeof text, *info->initial ? "(%s%s%s; default %s)" : "(%s%s%s)", range,
+                 *info->unit ? " " : "", unit_of(unit, info), info->initial);
+        print_roff(info->kind == ISO_VALUE_TEXT ? "Default:" : text);
+        if (info->kind == ISO_VALUE_TEXT)
             print_roff(info->initial);
-            printf(")\n");
-        } else {
-            printf("Default:\n");
-            print_roff(info->initial);
-        }
     }
 }
 
