@@ -318,6 +318,40 @@ static void test_boxes_that_share_an_edge(void) {
     }
 }
 
+/* Whichever of the two is inside out, and whichever way their common face is cut in triangles. */
+static void test_boxes_that_share_a_face(void) {
+    for (int round = 0; round < 32; round++) {
+        int inverted = round & 3, diagonal = round >> 2 & 1, seed = round >> 3;
+        shape s = cube(20);
+        if (diagonal) { /* the upper box's floor, the other way */
+            shape upper = {0};
+            shape_box(&upper, 0, 0, 20, 20, 20, 30);
+            shape_quad(&s, (shape_point){0, 20, 20}, (shape_point){20, 20, 20},
+                       (shape_point){20, 0, 20}, (shape_point){0, 0, 20});
+            for (int t = 2; t < 12; t++) {
+                const float *f = upper.triangle + 9 * t;
+                shape_add(&s, (shape_point){f[0], f[1], f[2]}, (shape_point){f[3], f[4], f[5]},
+                          (shape_point){f[6], f[7], f[8]});
+            }
+            shape_free(&upper);
+        } else {
+            shape_box(&s, 0, 0, 20, 20, 20, 30);
+        }
+        if (inverted & 1)
+            shape_turn(&s, 0, 12);
+        if (inverted & 2)
+            shape_turn(&s, 12, 24);
+        if (seed)
+            shape_shuffle(&s, (uint64_t)seed);
+        iso_mesh mesh;
+        if (mend(&mesh, &s, 12000)) {
+            CHECK(mesh.defects.inverted_shells == (inverted > 0));
+            iso_mesh_free(&mesh);
+        }
+        shape_free(&s);
+    }
+}
+
 /* Solids of random cells meet along edges and in corners in every way there is. */
 static void test_random_cells(void) {
     uint64_t state = 5;
@@ -603,6 +637,7 @@ int main(void) {
     RUN(test_coincident_faces_cancel);
     RUN(test_triangles_back_to_back);
     RUN(test_boxes_that_share_an_edge);
+    RUN(test_boxes_that_share_a_face);
     RUN(test_random_cells);
     RUN(test_turned_triangles_are_turned_back);
     RUN(test_cavities_stay);

@@ -95,6 +95,7 @@ static void test_counts_that_lie(void) {
 
 static void test_too_short(void) {
     refuse("", 0, "empty", "");
+    refuse(NULL, 0, "empty", "");
     refuse("x", 1, "1 bytes", "too few");
     char zeros[83] = {0};
     refuse(zeros, 83, "83 bytes", "too few");

@@ -1,6 +1,7 @@
 #include "mesh/repair.h"
 
 #include "base/memory.h"
+#include "mesh/union_find.h"
 
 static int32_t low_end(const iso_mesh *mesh, int32_t dart) {
     int32_t u = mesh->origin[dart], w = mesh->origin[iso_mesh_alpha(dart)];
@@ -87,6 +88,7 @@ int64_t iso_mesh_edges_bad(const iso_mesh_edges *edges, const iso_mesh *mesh) {
 typedef struct leaf {
     double x, y;
     int32_t dart;
+    int32_t patch; /* of triangles joined by good edges */
     bool begins;
 } leaf;
 
@@ -106,7 +108,8 @@ static double size(double a) {
     return a < 0 ? -a : a;
 }
 
-static void find_leaves(leaf *leaves, const iso_mesh *mesh, const int32_t *dart, int32_t count) {
+static void find_leaves(leaf *leaves, const iso_mesh *mesh, int32_t *above, const int32_t *dart,
+                        int32_t count) {
     int32_t low = low_end(mesh, dart[0]), high = high_end(mesh, dart[0]);
     iso_vec3 foot = mesh->position[low], axis = minus(mesh->position[high], foot);
     /* any two vectors that make a right-handed frame with the axis do: the order around it is the
@@ -125,12 +128,16 @@ static void find_leaves(leaf *leaves, const iso_mesh *mesh, const int32_t *dart,
         leaves[i].x = dot(to, right) < 0 ? -leaves[i].x : leaves[i].x;
         leaves[i].y = dot(to, up) < 0 ? -dot(to, up) * dot(to, up) : dot(to, up) * dot(to, up);
         leaves[i].dart = dart[i];
+        leaves[i].patch = iso_root_of(above, dart[i] / 3);
         leaves[i].begins = mesh->origin[dart[i]] == high;
     }
 }
 
 /* Before in counter-clockwise order from the positive x axis. Squared components with their signs
- * keep the order of directions without a root. */
+ * keep the order of directions without a root. Sheets that coincide lie in one order where they
+ * begin and in the other where they end, as the leaves of a book: so they pair with the same sheets
+ * along all of their rim, and two solids with a face in common stay two even if one is inside out.
+ */
 static bool before(const leaf *a, const leaf *b) {
     bool a_lower = a->y < 0 || (a->y == 0 && a->x < 0);
     bool b_lower = b->y < 0 || (b->y == 0 && b->x < 0);
@@ -139,7 +146,10 @@ static bool before(const leaf *a, const leaf *b) {
     double left = a->x * b->y, right = a->y * b->x;
     if (left != right)
         return left > right;
-    return a->dart < b->dart;
+    if (a->begins != b->begins)
+        return b->begins;
+    bool earlier = a->patch != b->patch ? a->patch < b->patch : a->dart < b->dart;
+    return a->dart != b->dart && earlier == a->begins;
 }
 
 static void sort_leaves(leaf *leaves, int32_t count) {
@@ -186,30 +196,53 @@ static int64_t pair_leaves(iso_mesh *mesh, leaf *leaves, int32_t count, int32_t 
     return alone;
 }
 
-iso_status iso_mesh_edges_pair(int64_t *open, iso_mesh *mesh, const iso_mesh_edges *edges) {
+/* Pair the good edges and find the patches that they hold together; returns the largest number of
+ * darts on any other edge. */
+static int32_t pair_good(iso_mesh *mesh, int32_t *above, const iso_mesh_edges *edges) {
     int32_t largest = 0;
-    *open = 0;
+    for (int32_t t = 0; t < mesh->triangle_count; t++)
+        above[t] = t;
     for (int64_t e = 0; e < edges->count; e++) {
+        const int32_t *dart = edges->dart + edges->first[e];
         int32_t count = edges->first[e + 1] - edges->first[e];
-        largest = count > largest ? count : largest;
+        if (!is_good(mesh, dart, count)) {
+            largest = count > largest ? count : largest;
+            continue;
+        }
+        mesh->opposite[dart[0]] = dart[1];
+        mesh->opposite[dart[1]] = dart[0];
+        iso_join_roots(above, iso_root_of(above, dart[0] / 3), iso_root_of(above, dart[1] / 3));
     }
+    return largest;
+}
+
+static int64_t pair_others(iso_mesh *mesh, int32_t *above, leaf *leaves, int32_t *stack,
+                           const iso_mesh_edges *edges) {
+    int64_t open = 0;
+    for (int64_t e = 0; e < edges->count; e++) {
+        const int32_t *dart = edges->dart + edges->first[e];
+        int32_t count = edges->first[e + 1] - edges->first[e];
+        if (is_good(mesh, dart, count))
+            continue;
+        find_leaves(leaves, mesh, above, dart, count);
+        sort_leaves(leaves, count);
+        open += pair_leaves(mesh, leaves, count, stack);
+    }
+    return open;
+}
+
+iso_status iso_mesh_edges_pair(int64_t *open, iso_mesh *mesh, const iso_mesh_edges *edges) {
     leaf *leaves = NULL;
-    int32_t *stack = NULL;
+    int32_t *stack = NULL, *above = NULL;
+    *open = 0;
+    ISO_TRY(ISO_ALLOCATE(above, mesh->triangle_count));
+    int32_t largest = pair_good(mesh, above, edges);
     iso_status status = ISO_ALLOCATE(leaves, largest);
     if (status == ISO_OK)
         status = ISO_ALLOCATE(stack, largest);
-    for (int64_t e = 0; status == ISO_OK && e < edges->count; e++) {
-        const int32_t *dart = edges->dart + edges->first[e];
-        int32_t count = edges->first[e + 1] - edges->first[e];
-        if (is_good(mesh, dart, count)) {
-            mesh->opposite[dart[0]] = dart[1];
-            mesh->opposite[dart[1]] = dart[0];
-            continue;
-        }
-        find_leaves(leaves, mesh, dart, count);
-        sort_leaves(leaves, count);
-        *open += pair_leaves(mesh, leaves, count, stack);
-    }
+    if (status == ISO_OK && largest > 0)
+        *open = pair_others(mesh, above, leaves, stack, edges);
+    iso_release(above);
     iso_release(leaves);
     iso_release(stack);
     return status;

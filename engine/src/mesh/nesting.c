@@ -7,25 +7,44 @@ typedef struct nest {
     int32_t inner, around, winding;
 } nest;
 
+/* Where a shell asks what is around it: a point on it, and the way into it. */
+typedef struct probe {
+    iso_vec3 at, in;
+} probe;
+
+/* mm. A face this close to a probe touches it, and it counts on which side of it the way in leads.
+ * Far below anything that is printed, far above rounding. */
+#define TOUCH 1e-6
+
 typedef struct nesting {
     const iso_mesh *mesh;
     const int32_t *shell;
     int32_t shells;
-    iso_vec3 *probe; /* [shell] */
-    int32_t *by_x;   /* [shell] shells by their probe's x */
-    nest *nests;     /* one a hit at first, later one a pair of shells, sorted */
+    probe *probe;  /* [shell] */
+    int32_t *by_x; /* [shell] shells by their probe's x */
+    nest *nests;   /* one a hit at first, later one a pair of shells, sorted */
     int64_t count, capacity;
     int32_t *depth;   /* [shell] how many are around it */
     int32_t *inwards; /* [shell] by depth */
 } nesting;
 
-static void find_probes(nesting *n) {
+static iso_vec3 normal_of(const iso_vec3 *p, const iso_vec3 *q, const iso_vec3 *r) {
+    double ux = q->x - p->x, uy = q->y - p->y, uz = q->z - p->z;
+    double vx = r->x - p->x, vy = r->y - p->y, vz = r->z - p->z;
+    return (iso_vec3){uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+}
+
+static void find_probes(nesting *n, const double *volume) {
     for (int32_t t = n->mesh->triangle_count - 1; t >= 0; t--) {
         iso_vec3 p = n->mesh->position[n->mesh->origin[3 * t]];
         iso_vec3 q = n->mesh->position[n->mesh->origin[3 * t + 1]];
         iso_vec3 r = n->mesh->position[n->mesh->origin[3 * t + 2]];
-        n->probe[n->shell[t]] =
+        iso_vec3 in = normal_of(&p, &q, &r);
+        if (volume[n->shell[t]] >= 0)
+            in = (iso_vec3){-in.x, -in.y, -in.z};
+        n->probe[n->shell[t]].at =
             (iso_vec3){(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3, (p.z + q.z + r.z) / 3};
+        n->probe[n->shell[t]].in = in;
     }
 }
 
@@ -51,7 +70,7 @@ static void sort_by(int32_t *item, int32_t count, const nesting *n,
 }
 
 static bool probe_before(const nesting *n, int32_t a, int32_t b) {
-    double x = n->probe[a].x, y = n->probe[b].x;
+    double x = n->probe[a].at.x, y = n->probe[b].at.x;
     return x != y ? x < y : a < b;
 }
 
@@ -73,24 +92,29 @@ static int crossing(const iso_vec3 *a, const iso_vec3 *b, const iso_vec3 *q) {
     return side > 0 ? sign : 0;
 }
 
-/* How often the triangle's shadow winds around q, if the triangle is above q. */
+static double dot(iso_vec3 a, iso_vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* How often the triangle's shadow winds around the probe, if the triangle is above it. */
 static int winding_above(const iso_vec3 *p, const iso_vec3 *q, const iso_vec3 *r,
-                         const iso_vec3 *probe) {
-    int winding = crossing(p, q, probe) + crossing(q, r, probe) + crossing(r, p, probe);
+                         const probe *from) {
+    const iso_vec3 *at = &from->at;
+    int winding = crossing(p, q, at) + crossing(q, r, at) + crossing(r, p, at);
     if (winding == 0)
         return 0;
-    double ux = q->x - p->x, uy = q->y - p->y, uz = q->z - p->z;
-    double vx = r->x - p->x, vy = r->y - p->y, vz = r->z - p->z;
-    double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    double below = nx * (probe->x - p->x) + ny * (probe->y - p->y) + nz * (probe->z - p->z);
-    return (winding > 0 ? below < 0 : below > 0) ? winding : 0;
+    iso_vec3 normal = normal_of(p, q, r);
+    double side = dot(normal, (iso_vec3){at->x - p->x, at->y - p->y, at->z - p->z});
+    if (side * side <= TOUCH * TOUCH * dot(normal, normal))
+        side = dot(normal, from->in);
+    return (winding > 0 ? side < 0 : side > 0) ? winding : 0;
 }
 
 static int32_t first_at(const nesting *n, double x) {
     int32_t low = 0, high = n->shells;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
-        if (n->probe[n->by_x[middle]].x < x)
+        if (n->probe[n->by_x[middle]].at.x < x)
             low = middle + 1;
         else
             high = middle;
@@ -103,6 +127,8 @@ static double least(double a, double b, double c) {
     return a < c ? a : c;
 }
 
+/* Each triangle asks the probes in its range of x. With all shells in one column that is quadratic,
+ * at a nanosecond or so a question; parts on a bed lie side by side. */
 static iso_status find_hits(nesting *n) {
     for (int32_t t = 0; t < n->mesh->triangle_count; t++) {
         const iso_vec3 *p = &n->mesh->position[n->mesh->origin[3 * t]];
@@ -110,10 +136,10 @@ static iso_status find_hits(nesting *n) {
         const iso_vec3 *r = &n->mesh->position[n->mesh->origin[3 * t + 2]];
         double end = -least(-p->x, -q->x, -r->x);
         for (int32_t i = first_at(n, least(p->x, q->x, r->x)); i < n->shells; i++) {
-            const iso_vec3 *probe = &n->probe[n->by_x[i]];
-            if (probe->x > end)
+            const probe *from = &n->probe[n->by_x[i]];
+            if (from->at.x > end)
                 break;
-            int winding = n->by_x[i] == n->shell[t] ? 0 : winding_above(p, q, r, probe);
+            int winding = n->by_x[i] == n->shell[t] ? 0 : winding_above(p, q, r, from);
             if (winding == 0)
                 continue;
             ISO_TRY(ISO_GROW(n->nests, n->capacity, n->count + 1));
@@ -199,7 +225,7 @@ static iso_status find_inverted(bool *turned, nesting *n, const double *volume) 
     ISO_TRY(ISO_ALLOCATE(n->depth, n->shells));
     ISO_TRY(ISO_ALLOCATE(n->inwards, n->shells));
     memset(turned, 0, (size_t)n->shells * sizeof *turned);
-    find_probes(n);
+    find_probes(n, volume);
     sort_by(n->by_x, n->shells, n, probe_before);
     ISO_TRY(find_hits(n));
     sum_hits(n);

@@ -180,7 +180,8 @@ iso_status iso_mesh_read_memory(iso_mesh *mesh, const void *bytes, int64_t size)
     iso_stl_source source = {
         .path = "memory", .file = -1, .size = size, .end = size, .ended = true};
     ISO_TRY(ISO_ALLOCATE(source.buffer, size));
-    memcpy(source.buffer, bytes, (size_t)size);
+    if (size > 0) /* bytes may be NULL then */
+        memcpy(source.buffer, bytes, (size_t)size);
     iso_status status = read_source(mesh, &source);
     close_source(&source);
     return status;
