@@ -35,17 +35,13 @@ iso_status edges_push(iso_edges *edges, iso_point from, iso_point to, uint8_t fl
     return ISO_OK;
 }
 
-/* Unsigned so that one comparison checks both ends. */
-static inline bool in_range(int32_t x) {
-    return (uint32_t)x + ISO_COORDINATE_MAX <= 2u * ISO_COORDINATE_MAX;
-}
-
-static iso_status out_of_range(int32_t contour, int32_t at, iso_point p) {
+static iso_status out_of_range(int32_t contour, int32_t at, iso_point p, int32_t limit) {
     return iso_fail(ISO_OUTSIDE, "contour %d, point %d (%.4f, %.4f mm) is beyond +-%.1f mm",
-                    (int)contour, (int)at, iso_mm(p.x), iso_mm(p.y), iso_mm(ISO_COORDINATE_MAX));
+                    (int)contour, (int)at, iso_mm(p.x), iso_mm(p.y), iso_mm(limit));
 }
 
-iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) {
+static iso_status add_within(iso_edges *edges, const iso_region *region, int operand,
+                             int32_t limit) {
     int32_t points = region->count ? region->first[region->count] : 0;
     ISO_TRY(edges_reserve(edges, (int64_t)edges->count + points));
     for (int32_t c = 0; c < region->count; c++) {
@@ -56,8 +52,8 @@ iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) {
         iso_point last = region->point[end - 1];
         for (int32_t i = first; i < end; i++) {
             iso_point p = region->point[i];
-            if (!in_range(p.x) || !in_range(p.y))
-                return out_of_range(c, i - first, p);
+            if (p.x < -limit || p.x > limit || p.y < -limit || p.y > limit)
+                return out_of_range(c, i - first, p, limit);
             if (point_equal(p, last))
                 continue;
             edges->from[slot] = last;
@@ -72,4 +68,12 @@ iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) {
         edges->count = slot;
     }
     return ISO_OK;
+}
+
+iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) {
+    return add_within(edges, region, operand, ISO_COORDINATE_MAX);
+}
+
+iso_status edges_add_raw(iso_edges *edges, const iso_region *raw) {
+    return add_within(edges, raw, 0, 2 * ISO_COORDINATE_MAX);
 }

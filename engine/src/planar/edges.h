@@ -37,6 +37,10 @@ void edges_free(iso_edges *edges);
  * exceeds ISO_COORDINATE_MAX. */
 iso_status edges_add(iso_edges *edges, const iso_region *region, int operand) ISO_MUST_CHECK;
 
+/* The same for the raw contours of an offset, which may swing out beyond the range of what comes of
+ * them: up to twice ISO_COORDINATE_MAX, for which the predicates have bits to spare. */
+iso_status edges_add_raw(iso_edges *edges, const iso_region *raw) ISO_MUST_CHECK;
+
 /* Append an unlinked edge. */
 iso_status edges_push(iso_edges *edges, iso_point from, iso_point to, uint8_t flags) ISO_MUST_CHECK;
 

@@ -184,6 +184,21 @@ static bool is_inside(const iso_winding *w, const void *context) {
     return w->of[0] > 0;
 }
 
+static iso_status check_range(iso_region *out, int32_t distance) {
+    int32_t count = out->count ? out->first[out->count] : 0;
+    for (int32_t i = 0; i < count; i++) {
+        iso_point p = out->point[i];
+        if (p.x >= -ISO_COORDINATE_MAX && p.x <= ISO_COORDINATE_MAX && p.y >= -ISO_COORDINATE_MAX &&
+            p.y <= ISO_COORDINATE_MAX)
+            continue;
+        iso_region_clear(out);
+        return iso_fail(ISO_OUTSIDE,
+                        "an offset by %.4f mm reaches (%.4f, %.4f) mm, beyond +-%.1f mm",
+                        iso_mm(distance), iso_mm(p.x), iso_mm(p.y), iso_mm(ISO_COORDINATE_MAX));
+    }
+    return ISO_OK;
+}
+
 iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_options *options,
                       iso_planar_scratch *scratch) {
     iso_region_clear(out);
@@ -197,7 +212,8 @@ iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_op
         ISO_TRY(edges_add(&scratch->edges, in, 0));
     } else {
         ISO_TRY(draw_raw(in, options, scratch));
-        ISO_TRY(edges_add(&scratch->edges, &scratch->raw, 0));
+        ISO_TRY(edges_add_raw(&scratch->edges, &scratch->raw));
     }
-    return planar_resolve(&(iso_choice){out, is_inside, NULL}, 1, scratch);
+    ISO_TRY(planar_resolve(&(iso_choice){out, is_inside, NULL}, 1, scratch));
+    return check_range(out, options->distance);
 }
