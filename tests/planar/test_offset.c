@@ -59,7 +59,8 @@ static const char *offsets(const planar_case *c, iso_join join, int sign) {
     iso_region region = {0}, out = {0};
     planar_case with = *c;
     const char *text = NULL;
-    must(iso_region_clean(&region, &c->a, ISO_FILL_NONZERO, scratch), "clean");
+    if (iso_region_clean(&region, &c->a, ISO_FILL_NONZERO, scratch) != ISO_OK)
+        return fault("clean: %s", iso_error_message());
     if (!c->offset.distance)
         with.offset = options_of(c, &region, sign);
     with.offset.join = join;

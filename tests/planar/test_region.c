@@ -39,7 +39,8 @@ static void add_and_clear(void) {
 static const char *locates(const planar_case *c) {
     iso_region region = {0};
     const char *text = NULL;
-    must(iso_region_clean(&region, &c->a, c->rule, scratch), "clean");
+    if (iso_region_clean(&region, &c->a, c->rule, scratch) != ISO_OK)
+        return fault("clean: %s", iso_error_message());
     rng r = {(uint64_t)c->index + 1};
     for (int i = 0; i < c->points && region.count && !text; i++) {
         iso_point p = {rng_between(&r, -c->span, c->span), rng_between(&r, -c->span, c->span)};

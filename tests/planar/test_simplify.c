@@ -17,7 +17,8 @@ static int must_be_in(const void *context, iso_point p) {
 
 static const char *simplifies(const planar_case *c) {
     iso_region region = {0}, out = {0};
-    must(iso_region_clean(&region, &c->a, ISO_FILL_NONZERO, scratch), "clean");
+    if (iso_region_clean(&region, &c->a, ISO_FILL_NONZERO, scratch) != ISO_OK)
+        return fault("clean: %s", iso_error_message());
     const char *text = NULL;
     question q = {&region, c->tolerance};
     if (iso_region_simplify(&out, &region, c->tolerance, scratch) != ISO_OK)
