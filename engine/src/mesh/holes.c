@@ -1,5 +1,7 @@
 #include "mesh/repair.h"
 
+#include <math.h>
+
 #include "base/memory.h"
 #include "mesh/union_find.h"
 
@@ -77,7 +79,7 @@ static iso_vec3 minus(iso_vec3 a, iso_vec3 b) {
 }
 
 static double length(iso_vec3 a) {
-    return __builtin_sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+    return sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
 static double area(iso_vec3 p, iso_vec3 q, iso_vec3 r) {

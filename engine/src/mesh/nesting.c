@@ -187,7 +187,8 @@ static void sum_hits(nesting *n) {
         n->depth[n->nests[i].inner]++;
 }
 
-static const nest *nests_of(const nesting *n, int32_t inner) {
+/* Index of the first nest of a shell. */
+static int64_t first_nest(const nesting *n, int32_t inner) {
     int64_t low = 0, high = n->count;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
@@ -196,15 +197,15 @@ static const nest *nests_of(const nesting *n, int32_t inner) {
         else
             high = middle;
     }
-    return n->nests + low;
+    return low;
 }
 
 static void judge(bool *turned, const nesting *n, const double *volume) {
     for (int32_t i = 0; i < n->shells; i++) {
         int32_t inner = n->inwards[i], parent = -1;
-        const nest *around = nests_of(n, inner), *end = around + n->depth[inner];
-        int64_t material = 0;
-        for (; around < end; around++) {
+        int64_t material = 0, first = first_nest(n, inner);
+        for (int64_t k = first; k < first + n->depth[inner]; k++) {
+            const nest *around = &n->nests[k];
             bool other_way = turned[around->around];
             material += other_way ? -around->winding : around->winding;
             if (parent < 0 || n->depth[around->around] > n->depth[parent])
