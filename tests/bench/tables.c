@@ -30,8 +30,11 @@ static double share(const bench_job *job, int32_t stage) {
 }
 
 static void print_job(const char *name, const bench_job *job) {
-    printf("  %-18s %9.1f %9.1f %9.1f %9.1f %9.2f\n", name, 1e3 * job->cpu, 1e3 * job->cpu_median,
-           1e3 * job->wall, (double)job->kib / 1024, 1e-6 * (double)job->bytes);
+    printf("  %-18s %9.1f %9.1f %9.1f", name, 1e3 * job->cpu, 1e3 * job->cpu_median,
+           1e3 * job->wall);
+    if (job->bytes)
+        printf(" %9.1f %9.2f", (double)job->kib / 1024, 1e-6 * (double)job->bytes);
+    putchar('\n');
 }
 
 void tables_print(const bench_model *model, const bench_job *nothing) {
