@@ -174,6 +174,23 @@ static void boxes_side_by_side_become_one(void) {
     iso_region_free(&out);
 }
 
+/* Eight triangles with one edge each through the origin: pockets hardly wider than a unit. */
+static void a_pencil_of_triangles_has_parents(void) {
+    static const iso_point triangle[][3] = {{{53760, -21116}, {-53760, 21116}, {-25336, 8451}},
+                                            {{-56744, 78237}, {56744, -78237}, {-56136, -56760}},
+                                            {{-42353, -79352}, {42353, 79352}, {59411, -59627}},
+                                            {{58097, -79464}, {-58097, 79464}, {70628, 39030}},
+                                            {{41292, -21174}, {-41292, 21174}, {45667, 71918}},
+                                            {{71916, -27561}, {-71916, 27561}, {67338, -68347}},
+                                            {{-49272, 74105}, {49272, -74105}, {76238, 54759}},
+                                            {{-45033, 17293}, {45033, -17293}, {37759, -61791}}};
+    planar_case c = {.kind = "pencil", .points = 4000, .span = 80000, .rule = ISO_FILL_NONZERO};
+    for (int i = 0; i < 8; i++)
+        must_add(&c.a, triangle[i], 3);
+    CHECK(cleans(&c) == NULL);
+    case_free(&c);
+}
+
 static void nothing_comes_of_nothing(void) {
     iso_region in = {0}, out = {0};
     add_box(&out, 0, 0, 9, 9); /* what was there before must go */
@@ -214,6 +231,7 @@ int main(void) {
     RUN(twice_around);
     RUN(opposite_copies_cancel);
     RUN(boxes_side_by_side_become_one);
+    RUN(a_pencil_of_triangles_has_parents);
     RUN(nothing_comes_of_nothing);
     RUN(the_whole_range);
     RUN(positive);
