@@ -3,7 +3,7 @@
 #include "solids.h"
 
 static void check_same(const char *settings, const shape *s, const char *name) {
-    static const int32_t threads[] = {1, 2, 3, 4, 8, 1, 8};
+    static const int32_t threads[] = {1, 2, 3, 4, 8};
     const char *path = print_path("model.stl");
     print first;
     CHECK(shape_write_binary(s, path));
