@@ -62,6 +62,11 @@ void tables_print(const bench_model *model, const bench_job *nothing) {
     fflush(stdout);
 }
 
+/* Three digits, never an exponent. */
+static void print_short(const char *before, double value, const char *after) {
+    printf("%s%.*f%s", before, value < 9.995 ? 2 : value < 99.95 ? 1 : 0, value, after);
+}
+
 static void print_stages_markdown(const bench_model *model, int count) {
     printf("| stage | rate in | floor |");
     for (int m = 0; m < count; m++)
@@ -78,10 +83,10 @@ static void print_stages_markdown(const bench_model *model, int count) {
         printf(" | %s |", kind->floor);
         for (int m = 0; m < count; m++) {
             const bench_row *row = &model[m].stages.row[i];
-            printf(" %.3g", per_second(row, 0));
+            print_short(" ", per_second(row, 0), "");
             if (row->rate[1].unit)
-                printf("; %.3g", per_second(row, 1));
-            printf(" (**%.3g**) |", ratio(row));
+                print_short("; ", per_second(row, 1), "");
+            print_short(" (**", ratio(row), "**) |");
         }
         putchar('\n');
     }
