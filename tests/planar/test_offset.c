@@ -27,7 +27,7 @@ static iso_offset_options options_of(const planar_case *c, const iso_region *reg
         distance = rng_between(&r, 1, 5);
         break;
     case 1:
-        distance = rng_between(&r, 1, mean);
+        distance = rng_between(&r, 1, n > 2000 ? 1 + c->span / 2000 : mean);
         break;
     case 2:
         distance = rng_between(&r, 1, 1 + c->span / 50);
