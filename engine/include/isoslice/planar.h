@@ -66,7 +66,7 @@ typedef struct iso_offset_options {
     int32_t distance;   /* units; > 0 grows, < 0 shrinks */
     iso_join join;      /* at corners that open up */
     double mitre_limit; /* longest mitre, in distances; beyond it the corner is squared. Usual 2 */
-    int32_t arc_tolerance; /* units between a round join and the true arc, either way. Usual 50 */
+    int32_t arc_tolerance; /* units a round join may reach beyond the true arc. Usual 50 */
 } iso_offset_options;
 
 ISO_API iso_offset_options iso_offset_defaults(int32_t distance); /* mitre, 2, 50 */

@@ -91,7 +91,7 @@ static iso_status apply_section(reader *from, int32_t index, int depth) {
     const iso_ini_section *section = &from->ini.section[index];
     if (depth > DEPTH_MAX)
         return iso_fail(ISO_BAD_CONFIG, "%s: [%s] inherits from itself", from->path, section->name);
-    const iso_ini_line *line = from->ini.line + section->first;
+    const iso_ini_line *line = section->count > 0 ? from->ini.line + section->first : NULL;
     for (int32_t i = 0; i < section->count && *section->name; i++)
         if (strcmp(line[i].key, "inherits") == 0)
             ISO_TRY(apply_parents(from, section->name, &line[i], depth));

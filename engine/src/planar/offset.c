@@ -32,7 +32,6 @@ typedef struct iso_rawing {
     int64_t count;   /* points written in raw->point */
     double distance; /* > 0 */
     double sign;     /* 1 grows, -1 shrinks */
-    double tip_max;  /* a mitre no longer than this beyond the distance passes for any join */
     const iso_offset_options *options;
 } iso_rawing;
 
@@ -72,15 +71,19 @@ static iso_vec2 halfway(iso_vec2 a, iso_vec2 b, iso_vec2 ahead) {
     return length < 1e-6 ? ahead : (iso_vec2){sum.x / length, sum.y / length};
 }
 
-/* Points of the arc between the shifts a and b, neither included, by halving: only square roots,
- * and the same on every machine. */
+/* The arc between the shifts a and b as tangents: the points where they meet, by halving the arc
+ * until these lie within the tolerance. Tangents keep outside the circle, so that no point loses a
+ * disc that covers it; the first and the last are the edges' own copies. Only square roots, and the
+ * same on every machine. */
 static iso_status put_arc(iso_rawing *r, iso_point corner, iso_vec2 a, iso_vec2 b, int depth) {
-    double cosine = dot(a, b), half = sqrt(cosine < -1 ? 0 : (1 + cosine) / 2);
-    if (depth == 0 || r->distance * (1 - half) <= r->options->arc_tolerance)
-        return ISO_OK;
+    double cosine = dot(a, b);
+    if (cosine > -0.9 &&
+        (depth == 0 || r->distance * (sqrt(2 / (1 + cosine)) - 1) <= r->options->arc_tolerance)) {
+        iso_vec2 sum = {a.x + b.x, a.y + b.y};
+        return put(r, corner, sum, r->distance / (1 + cosine));
+    }
     iso_vec2 middle = halfway(a, b, (iso_vec2){-a.y * r->sign, a.x * r->sign});
     ISO_TRY(put_arc(r, corner, a, middle, depth - 1));
-    ISO_TRY(put(r, corner, middle, r->distance));
     return put_arc(r, corner, middle, b, depth - 1);
 }
 
@@ -101,18 +104,16 @@ static iso_status put_square(iso_rawing *r, iso_point corner, const iso_side *in
 
 static iso_status put_opening(iso_rawing *r, iso_point corner, const iso_side *in,
                               const iso_side *out, double cosine) {
+    if (r->options->join == ISO_JOIN_ROUND)
+        return put_arc(r, corner, in->shift, out->shift, ARC_DEPTH_MAX);
     double mitre = sqrt(2 / (1 + cosine)); /* tip's distance, in distances */
-    bool tip = r->options->join == ISO_JOIN_MITRE ? mitre <= r->options->mitre_limit
-                                                  : r->distance * (mitre - 1) <= r->tip_max;
-    if (cosine > -0.999 && tip) {
+    double limit =
+        r->options->join == ISO_JOIN_MITRE ? r->options->mitre_limit : 1 + 0.5 / r->distance;
+    if (cosine > -0.999 && mitre <= limit) {
         iso_vec2 sum = {in->shift.x + out->shift.x, in->shift.y + out->shift.y};
         return put(r, corner, sum, r->distance / (1 + cosine));
     }
-    if (r->options->join != ISO_JOIN_ROUND)
-        return put_square(r, corner, in, out);
-    ISO_TRY(put(r, corner, in->shift, r->distance));
-    ISO_TRY(put_arc(r, corner, in->shift, out->shift, ARC_DEPTH_MAX));
-    return put(r, corner, out->shift, r->distance);
+    return put_square(r, corner, in, out);
 }
 
 static iso_status put_corner(iso_rawing *r, iso_point corner, const iso_side *in,
@@ -163,7 +164,6 @@ static iso_status draw_raw(const iso_region *in, const iso_offset_options *optio
     iso_rawing r = {.raw = raw, .options = options};
     r.sign = options->distance < 0 ? -1 : 1;
     r.distance = r.sign * (double)options->distance;
-    r.tip_max = options->join == ISO_JOIN_ROUND ? options->arc_tolerance : 0.5;
     iso_region_clear(raw);
     ISO_TRY(region_reserve(raw, in->count, in->count ? 2 * in->first[in->count] : 0));
     for (int32_t c = 0; c < in->count; c++) {

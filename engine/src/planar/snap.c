@@ -140,61 +140,85 @@ static iso_status collide(iso_snap *snap, int32_t e, int32_t f) {
     return f_first ? collide_neighbours(snap, f, e) : ISO_OK;
 }
 
-/* An edge in a cell, with its box at hand. */
-typedef struct iso_resident {
-    int32_t x0, y0, x1, y1;
-    int32_t slot;
-} iso_resident;
-
-static bool resident_less(const iso_resident *a, const iso_resident *b) {
-    return a->x0 != b->x0 ? a->x0 < b->x0 : a->slot < b->slot;
-}
-ISO_SORT(sort_residents, iso_resident, resident_less)
-
-static int32_t fetch_residents(iso_resident *out, const iso_snap *snap, int32_t layer,
-                               int32_t cell) {
+/* Try the edges of two runs whose boxes meet. */
+static iso_status collide_runs(iso_snap *snap, const iso_run *a, const iso_run *b) {
     const iso_edges *edges = snap->edges;
-    const iso_grid_layer *l = &snap->grid.layer[layer];
-    int32_t n = 0;
-    for (int32_t i = l->first[cell]; i < l->first[cell + 1]; i++) {
-        int32_t slot = l->slot[i];
-        if (edges->flags[slot] & EDGE_DEAD)
+    for (int32_t e = a->first; e < a->first + a->count; e++) {
+        iso_box box = box_of(edges->from[e], edges->to[e]);
+        if (edges->flags[e] & EDGE_DEAD || !boxes_meet(&box, &b->box))
             continue;
-        iso_point a = edges->from[slot], b = edges->to[slot];
-        out[n++] = (iso_resident){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y,
-                                  a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y, slot};
-    }
-    return n;
-}
-
-static bool boxes_meet(const iso_resident *a, const iso_resident *b) {
-    return (a->x0 <= b->x1) & (b->x0 <= a->x1) & (a->y0 <= b->y1) & (b->y0 <= a->y1);
-}
-
-enum { CROWD = 24 }; /* residents from which sorting pays */
-
-static iso_status collide_within(iso_snap *snap, iso_resident *resident, int32_t count) {
-    bool sorted = count > CROWD;
-    if (sorted)
-        sort_residents(resident, count);
-    for (int32_t i = 0; i < count; i++) {
-        for (int32_t j = i + 1; j < count; j++) {
-            if (sorted && resident[j].x0 > resident[i].x1)
-                break;
-            if (boxes_meet(&resident[i], &resident[j]))
-                ISO_TRY(collide(snap, resident[i].slot, resident[j].slot));
+        for (int32_t f = b->first; f < b->first + b->count; f++) {
+            iso_box other = box_of(edges->from[f], edges->to[f]);
+            if (boxes_meet(&box, &other) && !(edges->flags[f] & EDGE_DEAD))
+                ISO_TRY(collide(snap, e, f));
         }
     }
     return ISO_OK;
 }
 
-/* All fresh edges against the residents of older layers. */
-static iso_status collide_between(iso_snap *snap, const iso_resident *fresh, int32_t fresh_count,
-                                  const iso_resident *old, int32_t old_count) {
-    for (int32_t i = 0; i < fresh_count; i++)
-        for (int32_t j = 0; j < old_count; j++)
-            if (boxes_meet(&fresh[i], &old[j]))
-                ISO_TRY(collide(snap, fresh[i].slot, old[j].slot));
+/* Neighbours within runs are tried here, once; all other pairs meet in some cell. */
+static iso_status collide_inside_runs(iso_snap *snap, const iso_grid_layer *layer) {
+    for (int32_t r = 0; r < layer->run_count; r++) {
+        const iso_run *run = &layer->run[r];
+        for (int32_t e = run->first; e + 1 < run->first + run->count; e++)
+            ISO_TRY(collide_neighbours(snap, e, e + 1));
+    }
+    return ISO_OK;
+}
+
+/* A run in a cell. `x0` repeats what sorting looks at. */
+typedef struct iso_resident {
+    const iso_run *run;
+    int32_t x0;
+    bool bent;
+} iso_resident;
+
+static bool resident_less(const iso_resident *a, const iso_resident *b) {
+    return a->x0 != b->x0 ? a->x0 < b->x0 : a->run->first < b->run->first;
+}
+ISO_SORT(sort_residents, iso_resident, resident_less)
+
+static int32_t fetch_residents(iso_resident *out, const iso_snap *snap, int32_t layer,
+                               int32_t cell) {
+    const iso_grid_layer *l = &snap->grid.layer[layer];
+    int32_t n = 0;
+    for (int32_t i = l->first[cell]; i < l->first[cell + 1]; i++) {
+        const iso_run *run = &l->run[l->entry[i]];
+        if (run->count == 1 && snap->edges->flags[run->first] & EDGE_DEAD)
+            continue;
+        out[n++] = (iso_resident){run, run->box.min.x, run_is_bent(&snap->grid, run)};
+    }
+    return n;
+}
+
+/* Runs that stand in all cells of their boxes are tried in one of those they share: that of the
+ * least corner of what the boxes share. */
+static iso_status collide_residents(iso_snap *snap, const iso_resident *a, const iso_resident *b,
+                                    int32_t cell) {
+    const iso_box *p = &a->run->box, *q = &b->run->box;
+    if (!boxes_meet(p, q))
+        return ISO_OK;
+    iso_point corner = {p->min.x > q->min.x ? p->min.x : q->min.x,
+                        p->min.y > q->min.y ? p->min.y : q->min.y};
+    if (!a->bent && !b->bent && grid_cell(&snap->grid, corner) != cell)
+        return ISO_OK;
+    return collide_runs(snap, a->run, b->run);
+}
+
+enum { CROWD = 24 }; /* residents from which sorting pays */
+
+static iso_status collide_within(iso_snap *snap, iso_resident *resident, int32_t count,
+                                 int32_t cell) {
+    bool sorted = count > CROWD;
+    if (sorted)
+        sort_residents(resident, count);
+    for (int32_t i = 0; i < count; i++) {
+        for (int32_t j = i + 1; j < count; j++) {
+            if (sorted && resident[j].x0 > resident[i].run->box.max.x)
+                break;
+            ISO_TRY(collide_residents(snap, &resident[i], &resident[j], cell));
+        }
+    }
     return ISO_OK;
 }
 
@@ -208,7 +232,7 @@ static int32_t largest_cell(const iso_grid *grid) {
     return largest;
 }
 
-/* Collide the edges of the newest layer with each other and with all others. */
+/* Collide the runs of the newest layer with each other and with all older ones. */
 static iso_status find_collisions(iso_snap *snap, iso_arena *arena) {
     const iso_grid *grid = &snap->grid;
     int32_t newest = grid->layer_count - 1, cells = grid->columns * grid->rows;
@@ -216,14 +240,19 @@ static iso_status find_collisions(iso_snap *snap, iso_arena *arena) {
     iso_resident *fresh, *old;
     ISO_TRY(ISO_PUSH(fresh, arena, room));
     ISO_TRY(ISO_PUSH(old, arena, room));
+    ISO_TRY(collide_inside_runs(snap, &grid->layer[newest]));
     const int32_t *first = grid->layer[newest].first;
     for (int32_t cell = 0; cell < cells; cell++) {
         if (first[cell] == first[cell + 1])
             continue;
         int32_t count = fetch_residents(fresh, snap, newest, cell);
-        ISO_TRY(collide_within(snap, fresh, count));
-        for (int32_t l = 0; l < newest; l++)
-            ISO_TRY(collide_between(snap, fresh, count, old, fetch_residents(old, snap, l, cell)));
+        ISO_TRY(collide_within(snap, fresh, count, cell));
+        for (int32_t l = 0; l < newest; l++) {
+            int32_t old_count = fetch_residents(old, snap, l, cell);
+            for (int32_t i = 0; i < count; i++)
+                for (int32_t j = 0; j < old_count; j++)
+                    ISO_TRY(collide_residents(snap, &fresh[i], &old[j], cell));
+        }
     }
     return ISO_OK;
 }
@@ -233,11 +262,22 @@ static bool point_before(const iso_point *a, const iso_point *b) {
 }
 ISO_SORT(sort_points, iso_point, point_before)
 
+/* The edges of a run that pass the hot pixel. */
+static iso_status heat_run(iso_snap *snap, const iso_run *run, iso_point at) {
+    const iso_edges *edges = snap->edges;
+    for (int32_t slot = run->first; slot < run->first + run->count; slot++) {
+        iso_point a = edges->from[slot], b = edges->to[slot];
+        if (!(edges->flags[slot] & EDGE_DEAD) && box_holds(a, b, at) &&
+            end_meets(a, b, at, orient2d(a, b, at)))
+            ISO_TRY(bend_through(snap, slot, at));
+    }
+    return ISO_OK;
+}
+
 /* A crossing is a hot pixel for every edge near it, not just for the two that cross. */
 static iso_status heat_crossings(iso_snap *snap) {
     iso_snap_room *room = snap->room;
     const iso_grid *grid = &snap->grid;
-    const iso_edges *edges = snap->edges;
     sort_points(room->crossing, room->crossing_count);
     for (int64_t i = 0; i < room->crossing_count; i++) {
         iso_point at = room->crossing[i];
@@ -246,13 +286,8 @@ static iso_status heat_crossings(iso_snap *snap) {
         int32_t cell = grid_cell(grid, at);
         for (int32_t l = 0; l < grid->layer_count; l++) {
             const iso_grid_layer *layer = &grid->layer[l];
-            for (int32_t k = layer->first[cell]; k < layer->first[cell + 1]; k++) {
-                int32_t slot = layer->slot[k];
-                iso_point a = edges->from[slot], b = edges->to[slot];
-                if (!(edges->flags[slot] & EDGE_DEAD) && box_holds(a, b, at) &&
-                    end_meets(a, b, at, orient2d(a, b, at)))
-                    ISO_TRY(bend_through(snap, slot, at));
-            }
+            for (int32_t k = layer->first[cell]; k < layer->first[cell + 1]; k++)
+                ISO_TRY(heat_run(snap, &layer->run[layer->entry[k]], at));
         }
     }
     return ISO_OK;

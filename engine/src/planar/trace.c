@@ -6,8 +6,8 @@
 
 /* A simple closed run of boundary darts, chosen faces on its left. */
 typedef struct iso_loop {
-    iso_point least;      /* lexicographic least point */
-    iso_point after;      /* the point that follows it: tells loops apart that start in one point */
+    iso_point least; /* lexicographic least point */
+    iso_point lower; /* the neighbour of `least` below: the next point, of a hole the one before */
     int32_t first, count; /* in iso_tracing.dart */
     int32_t lead;         /* the dart that leaves `least` */
     int32_t index;        /* of `least` in the points of the arrangement */
@@ -57,10 +57,8 @@ static void find_least(iso_tracing *t, iso_loop *loop) {
     loop->lead = d;
     loop->index = index;
     loop->least = a->point[index];
-    loop->after = a->point[d & 1 ? index - 1 : index + 1];
 }
 
-/* Outer loops leave their least point to the right of how they came. */
 static iso_point point_before_least(const iso_tracing *t, const iso_loop *loop) {
     const iso_arrangement *a = t->a;
     int32_t d = loop->lead, chain = d >> 1;
@@ -80,7 +78,11 @@ static void emit_loop(iso_tracing *t, const int32_t *dart, int32_t count) {
     memcpy(t->dart + t->dart_count, dart, (size_t)count * sizeof *dart);
     t->dart_count += count;
     find_least(t, loop);
-    loop->hole = orient2d(point_before_least(t, loop), loop->least, loop->after) < 0;
+    int32_t d = loop->lead;
+    iso_point before = point_before_least(t, loop),
+              after = t->a->point[loop->index + (d & 1 ? -1 : 1)];
+    loop->hole = orient2d(before, loop->least, after) < 0;
+    loop->lower = loop->hole ? before : after;
 }
 
 /* Follow the boundary of one chosen face. Where it comes back to a junction it has passed, what
@@ -104,11 +106,13 @@ static void trace_boundary(iso_tracing *t, int32_t start) {
     } while (d != start);
 }
 
+/* Of loops that share their least point the one that starts lower is around the others, or beside
+ * them. */
 static bool loop_less(const iso_loop *a, const iso_loop *b) {
     if (!point_equal(a->least, b->least))
         return point_less(a->least, b->least);
-    return direction_less((int64_t)a->after.x - a->least.x, (int64_t)a->after.y - a->least.y,
-                          (int64_t)b->after.x - b->least.x, (int64_t)b->after.y - b->least.y);
+    return direction_less((int64_t)a->lower.x - a->least.x, (int64_t)a->lower.y - a->least.y,
+                          (int64_t)b->lower.x - b->least.x, (int64_t)b->lower.y - b->least.y);
 }
 ISO_SORT(sort_loops, iso_loop, loop_less)
 
