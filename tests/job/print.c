@@ -103,10 +103,13 @@ static void read_move(reader *r, const char *line, const char *end) {
     }
     m->bx = r->x, m->by = r->y, m->bz = r->z, m->f = r->f;
     int level_move = m->bx != m->ax || m->by != m->ay;
-    m->kind = level_move && extrudes ? MOVE_DRAW
-              : level_move           ? MOVE_TRAVEL
-              : m->bz != m->az       ? MOVE_RISE
-                                     : MOVE_FILAMENT;
+    /* what is too little for a last digit of E is drawn all the same */
+    int speck =
+        level_move && move_length(m) < 0.01 && m->f != floor(60 * p->options.travel_speed + 0.5);
+    m->kind = level_move && (extrudes || speck) ? MOVE_DRAW
+              : level_move                      ? MOVE_TRAVEL
+              : m->bz != m->az                  ? MOVE_RISE
+                                                : MOVE_FILAMENT;
     m->layer = p->level_count - 1;
     m->role = r->role;
     if (m->kind == MOVE_DRAW && !r->unbroken)
@@ -164,6 +167,18 @@ static void read_gcode(print *p) {
 
 /* ---- printing ---- */
 
+/* The firmware that the options describe. */
+static void set_machine(fio_virtual_options *machine, const iso_options *options) {
+    machine->print_acceleration = options->machine_max_acceleration_extruding;
+    machine->travel_acceleration = options->machine_max_acceleration_travel;
+    machine->retract_acceleration = options->machine_max_acceleration_retracting;
+    machine->junction_deviation = options->machine_max_junction_deviation;
+    machine->maximum_feedrate[2] = options->machine_max_feedrate_z;
+    machine->maximum_acceleration[2] = 1e4;
+    machine->filament_diameter = options->filament_diameter;
+    machine->maximum_flow = 1000;
+}
+
 static void set_volume(fio_virtual_options *machine, const iso_options *options) {
     const iso_points *bed = &options->bed_shape;
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
@@ -177,13 +192,12 @@ static void set_volume(fio_virtual_options *machine, const iso_options *options)
     }
     machine->origin[2] = fmin(0, options->z_offset);
     machine->size[2] = options->max_print_height + options->retract_lift + fabs(options->z_offset);
-    machine->filament_diameter = options->filament_diameter;
-    machine->maximum_flow = 1000;
 }
 
 static void run_printer(print *p) {
     fio_virtual_options machine = fio_virtual_options_defaults();
     fio_virtual_printer *printer;
+    set_machine(&machine, &p->options);
     set_volume(&machine, &p->options);
     p->verdict = fio_virtual_printer_create(&printer, &machine, NULL);
     if (p->verdict != FIO_OK)
