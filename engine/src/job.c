@@ -19,7 +19,7 @@
 #include "path/order.h"
 #include "planar/section.h"
 
-enum { LAYERS_PER_THREAD = 8 };
+enum { LAYERS_PER_THREAD = 8, RUN_LEVELS_MAX = 32 };
 
 static const char *const stage_name[ISO_STAGE_COUNT] = {"read",   "slice", "regions", "walls",
                                                         "shells", "fill",  "order",   "write"};
@@ -39,11 +39,14 @@ typedef struct iso_job {
     iso_levels levels;
     double projected; /* mm^2 of all triangles seen from above */
 
-    int32_t block;       /* layers filled in one go */
-    int32_t top, bottom; /* neighbours that the shells look at */
-    int32_t ring;        /* >= block + top + bottom: layer i is at layer[i % ring] */
-    iso_layer *layer;    /* [ring] */
-    int32_t begin;       /* first layer of the parallel loop under way */
+    int32_t block;                /* layers filled in one go */
+    int32_t top, bottom;          /* neighbours that the shells look at */
+    int32_t ring;                 /* >= block + top + bottom: layer i is at layer[i % ring] */
+    iso_layer *layer;             /* [ring] */
+    int32_t begin;                /* first layer of the parallel loop under way */
+    int32_t level;                /* and the level of its runs */
+    int32_t run_levels;           /* of each layer */
+    int32_t done[RUN_LEVELS_MAX]; /* layers whose runs of each level are made */
     iso_paths ordered;
     iso_output *output;
     iso_gcode_writer *writer;
@@ -194,25 +197,43 @@ static int32_t least(int32_t a, int32_t b) {
     return a < b ? a : b;
 }
 
+/* Level job->level of the runs that start at a layer. */
+static iso_status run_task(void *payload, int64_t number, int worker) {
+    iso_job *job = payload;
+    int32_t index = job->begin + (int32_t)number, level = job->level;
+    iso_layer *layer = layer_at(job, index);
+    const iso_layer *higher = layer_at(job, index + (1 << (level - 1)));
+    double begun = iso_stage_clock();
+    iso_status status = iso_shell_widen(&layer->run[level], &layer->run[level - 1],
+                                        &higher->run[level - 1], job->hand[worker].planar);
+    layer->seconds[ISO_STAGE_SHELLS] += iso_stage_clock() - begun;
+    return status;
+}
+
+/* The runs of the `layers` layers from `bottom` up: one if their number is a power of two, else two
+ * that overlap. */
+static iso_shell_side side_of(const iso_job *job, int32_t bottom, int32_t layers) {
+    iso_shell_side side = {.layers = layers};
+    int32_t level = iso_shell_level(layers), length = 1 << level;
+    side.missing = bottom < 0 ? -bottom : 0;
+    if (bottom + layers > job->levels.count)
+        side.missing = bottom + layers - job->levels.count;
+    if (layers == 0 || side.missing > 0)
+        return side;
+    side.cover[side.count++] = &layer_at(job, bottom)->run[level];
+    if (length < layers)
+        side.cover[side.count++] = &layer_at(job, bottom + layers - length)->run[level];
+    return side;
+}
+
 static iso_status fill_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
-    iso_hand *hand = &job->hand[worker];
     int32_t index = job->begin + (int32_t)number;
-    iso_shell_neighbours around = {.top = job->top, .bottom = job->bottom};
-    around.above_count = least(job->top, job->levels.count - 1 - index);
-    around.below_count = least(job->bottom, index);
-    const iso_region **region;
-    iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
-    ISO_TRY(ISO_PUSH(region, &hand->arena, around.above_count + around.below_count));
-    for (int32_t i = 0; i < around.above_count; i++)
-        region[i] = &layer_at(job, index + 1 + i)->coarse;
-    for (int32_t i = 0; i < around.below_count; i++)
-        region[around.above_count + i] = &layer_at(job, index - 1 - i)->coarse;
-    around.above = region;
-    around.below = region + around.above_count;
-    iso_status status = layer_fill(layer_at(job, index), hand, &around);
-    iso_arena_pop(&hand->arena, mark);
-    return status;
+    iso_shell_neighbours around = {.above = side_of(job, index + 1, job->top),
+                                   .below = side_of(job, index - job->bottom, job->bottom)};
+    if (job->top > 0 && index + 1 < job->levels.count)
+        around.next = &layer_at(job, index + 1)->run[0];
+    return layer_fill(layer_at(job, index), &job->hand[worker], &around);
 }
 
 static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) {
@@ -234,17 +255,31 @@ static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) 
     return ISO_OK;
 }
 
+/* Outlines up to `end`, and the runs that lie wholly below it. */
+static iso_status advance(iso_job *job, int32_t end) {
+    job->begin = job->done[0];
+    ISO_TRY(iso_parallel_for(job->pool, end - job->begin, outline_task, job));
+    job->done[0] = end;
+    for (job->level = 1; job->level < job->run_levels; job->level++) {
+        int32_t whole = end - (1 << job->level) + 1;
+        job->begin = job->done[job->level];
+        if (whole <= job->begin)
+            break;
+        ISO_TRY(iso_parallel_for(job->pool, whole - job->begin, run_task, job));
+        job->done[job->level] = whole;
+    }
+    return ISO_OK;
+}
+
 /* A window of layers moves up: outlines run ahead by the height of the top shell, and stay until
  * the bottom shell above them is done. */
 static iso_status make_layers(iso_job *job) {
     iso_point position = {0, 0};
-    int32_t count = job->levels.count, outlined = 0;
+    int32_t count = job->levels.count;
     for (int32_t filled = 0; filled < count;) {
-        int32_t end = least(filled + job->block, count), ahead = least(end + job->top, count);
+        int32_t end = least(filled + job->block, count);
         progress(job, 0.15 + 0.85 * filled / count, "layers");
-        job->begin = outlined;
-        ISO_TRY(iso_parallel_for(job->pool, ahead - outlined, outline_task, job));
-        outlined = ahead;
+        ISO_TRY(advance(job, least(end + job->top, count)));
         job->begin = filled;
         ISO_TRY(iso_parallel_for(job->pool, end - filled, fill_task, job));
         for (; filled < end; filled++)
@@ -314,13 +349,17 @@ static iso_status job_new(iso_job *job, int32_t input_count) {
     return ISO_OK;
 }
 
-/* Once the number of layers is known. */
+/* Once the number of layers is known. A shell thicker than the print is as thick as the print. */
 static iso_status layers_new(iso_job *job) {
-    job->top = least(job->top, job->levels.count);
-    job->bottom = least(job->bottom, job->levels.count);
-    job->ring = least(job->block + job->top + job->bottom, job->levels.count);
+    int32_t count = job->levels.count;
+    job->top = least(job->top, count);
+    job->bottom = least(job->bottom, count);
+    job->ring = least(job->block + job->top + job->bottom, count);
+    job->run_levels = 1 + iso_shell_level(job->top > job->bottom ? job->top : job->bottom);
     ISO_TRY(ISO_ALLOCATE(job->layer, job->ring));
     memset(job->layer, 0, (size_t)job->ring * sizeof *job->layer);
+    for (int32_t i = 0; i < job->ring; i++)
+        ISO_TRY(layer_new(&job->layer[i], job->run_levels));
     return ISO_OK;
 }
 

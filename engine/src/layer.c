@@ -26,9 +26,18 @@ void hand_free(iso_hand *hand) {
     iso_shell_free(&hand->shell);
 }
 
+iso_status layer_new(iso_layer *layer, int32_t levels) {
+    ISO_TRY(ISO_ALLOCATE(layer->run, levels));
+    memset(layer->run, 0, (size_t)levels * sizeof *layer->run);
+    layer->levels = levels;
+    return ISO_OK;
+}
+
 void layer_free(iso_layer *layer) {
+    for (int32_t k = 0; k < layer->levels; k++)
+        iso_region_free(&layer->run[k]);
+    iso_release(layer->run);
     iso_region_free(&layer->region);
-    iso_region_free(&layer->coarse);
     iso_region_free(&layer->area);
     iso_paths_free(&layer->paths);
     iso_release(layer->group);
@@ -55,7 +64,7 @@ static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_slices
     layer->square_mm = (double)iso_region_double_area(&layer->region) / 2 /
                        ((double)ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
     ISO_TRY(check(&layer->region, hand));
-    return iso_region_simplify(&layer->coarse, &layer->region, layer->settings.shell.narrowest / 4,
+    return iso_region_simplify(&layer->run[0], &layer->region, layer->settings.shell.narrowest / 4,
                                hand->planar);
 }
 
@@ -178,7 +187,7 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand) {
 iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_shell_neighbours *around) {
     const iso_layer_settings *s = &layer->settings;
     double begun = iso_stage_clock();
-    bool shelled = (around->top > 0 || around->bottom > 0) && layer->area.count > 0;
+    bool shelled = (around->above.layers > 0 || around->below.layers > 0) && layer->area.count > 0;
     if (shelled) {
         ISO_TRY(iso_shell_split(&hand->shell, &layer->area, around, &s->shell, hand->planar));
         ISO_TRY(check(&hand->shell.top, hand));
@@ -191,7 +200,7 @@ iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_shell_neighbou
     iso_status status = shelled ? fill_shelled(layer, hand)
                                 : fill_region(&whole, &layer->area, s->sparse, s->sparse_count);
     iso_arena_pop(&hand->arena, mark);
-    layer->seconds[ISO_STAGE_SHELLS] = split - begun;
+    layer->seconds[ISO_STAGE_SHELLS] += split - begun;
     layer->seconds[ISO_STAGE_FILL] = iso_stage_clock() - split;
     return status;
 }

@@ -30,9 +30,10 @@ double iso_stage_clock(void); /* seconds, from some fixed time on */
 typedef struct iso_layer {
     iso_layer_settings settings;
     iso_region region; /* the outline */
-    iso_region coarse; /* the same thinned, for the shells of its neighbours */
-    iso_region area;   /* within the walls: island by island, the outer contour first */
-    int32_t *group;    /* [area.count] island of `region` that each contour lies in */
+    iso_region *run;   /* [levels] what it shares with the layers above, coarsely (shell.h) */
+    int32_t levels;
+    iso_region area; /* within the walls: island by island, the outer contour first */
+    int32_t *group;  /* [area.count] island of `region` that each contour lies in */
     int64_t group_capacity;
     iso_paths paths;
     double square_mm; /* of the region */
@@ -51,11 +52,14 @@ iso_status hand_new(iso_hand *hand) ISO_MUST_CHECK;
 void hand_free(iso_hand *hand);
 void layer_free(iso_layer *layer);
 
+/* Room for that many levels of runs in a zeroed layer. */
+iso_status layer_new(iso_layer *layer, int32_t levels) ISO_MUST_CHECK;
+
 /* Start the layer anew from level `index` of all models' slices. */
 iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *slices,
                          int32_t model_count, int32_t index) ISO_MUST_CHECK;
 
-/* Add the fill. The neighbours' shell depths are those of the settings. */
+/* Add the fill. */
 iso_status layer_fill(iso_layer *layer, iso_hand *hand,
                       const iso_shell_neighbours *around) ISO_MUST_CHECK;
 

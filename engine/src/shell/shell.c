@@ -14,58 +14,38 @@ void iso_shell_free(iso_shell *shell) {
     iso_region_free(&shell->sparse);
 }
 
-/* Each outline adds one to the winding of its operand: covered is what all of them hold. */
-typedef struct iso_cover {
-    bool top, bottom;     /* is there a shell on that side at all? */
-    int32_t above, below; /* outlines that have to hold a place, NEXT not counted */
-} iso_cover;
+static bool covered(const iso_shell_side *side, int32_t winding) {
+    return side->layers == 0 || (side->missing == 0 && winding >= side->count);
+}
 
+/* Each cover adds one to the winding of its operand. */
 static bool is_top(const iso_winding *w, const void *context) {
-    const iso_cover *cover = context;
-    return w->of[FILL] > 0 && cover->top && w->of[NEXT] <= 0;
+    const iso_shell_neighbours *around = context;
+    return w->of[FILL] > 0 && around->above.layers > 0 && w->of[NEXT] <= 0;
 }
 
 static bool is_solid(const iso_winding *w, const void *context) {
-    const iso_cover *cover = context;
-    if (w->of[FILL] <= 0)
-        return false;
-    return (cover->top && (w->of[NEXT] <= 0 || w->of[ABOVE] < cover->above)) ||
-           (cover->bottom && w->of[BELOW] < cover->below);
+    const iso_shell_neighbours *around = context;
+    return w->of[FILL] > 0 && (is_top(w, context) || !covered(&around->above, w->of[ABOVE]) ||
+                               !covered(&around->below, w->of[BELOW]));
 }
 
-static bool same_outline(const iso_region *a, const iso_region *b) {
-    if (a->count != b->count || a->count == 0)
-        return a->count == b->count;
-    return memcmp(a->first, b->first, (size_t)(a->count + 1) * sizeof *a->first) == 0 &&
-           memcmp(a->point, b->point, (size_t)a->first[a->count] * sizeof *a->point) == 0;
-}
-
-/* Add the outlines of one side. One like the outline before it, as on any upright wall, tells
- * nothing new. Missing layers hold nothing: then more are needed than there are. */
-static iso_status add_outlines(int32_t *needed, iso_edges *edges, const iso_region *const *outline,
-                               int32_t count, int operand) {
-    for (int32_t i = 0; i < count; i++) {
-        bool next = operand == ABOVE && i == 0;
-        if (i > 0 && same_outline(outline[i], outline[i - 1]))
-            continue;
-        ISO_TRY(edges_add(edges, outline[i], next ? NEXT : operand));
-        *needed += !next;
-    }
+static iso_status add_side(iso_edges *edges, const iso_shell_side *side, int operand) {
+    for (int32_t i = 0; side->layers > 0 && side->missing == 0 && i < side->count; i++)
+        ISO_TRY(edges_add(edges, side->cover[i], operand));
     return ISO_OK;
 }
 
 static iso_status find_exposed(iso_shell *shell, const iso_region *fill,
                                const iso_shell_neighbours *around, iso_planar_scratch *scratch) {
-    iso_cover cover = {.top = around->top > 0,
-                       .bottom = around->bottom > 0,
-                       .above = around->above_count < around->top,
-                       .below = around->below_count < around->bottom};
     iso_edges *edges = &scratch->edges;
     edges->count = 0;
     ISO_TRY(edges_add(edges, fill, FILL));
-    ISO_TRY(add_outlines(&cover.above, edges, around->above, around->above_count, ABOVE));
-    ISO_TRY(add_outlines(&cover.below, edges, around->below, around->below_count, BELOW));
-    iso_choice choice[] = {{&shell->top, is_top, &cover}, {&shell->solid, is_solid, &cover}};
+    if (around->next)
+        ISO_TRY(edges_add(edges, around->next, NEXT));
+    ISO_TRY(add_side(edges, &around->above, ABOVE));
+    ISO_TRY(add_side(edges, &around->below, BELOW));
+    iso_choice choice[] = {{&shell->top, is_top, around}, {&shell->solid, is_solid, around}};
     return planar_resolve(choice, 2, scratch);
 }
 
@@ -120,4 +100,31 @@ iso_status iso_shell_split(iso_shell *shell, const iso_region *fill,
         iso_region_clear(&shell->sparse);
     }
     return status;
+}
+
+int32_t iso_shell_level(int32_t layers) {
+    int32_t level = 0;
+    while ((int64_t)2 << level <= layers)
+        level++;
+    return level;
+}
+
+static bool same_outline(const iso_region *a, const iso_region *b) {
+    if (a->count != b->count || a->count == 0)
+        return a->count == b->count;
+    return memcmp(a->first, b->first, (size_t)(a->count + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->point, b->point, (size_t)a->first[a->count] * sizeof *a->point) == 0;
+}
+
+/* Upright walls give the same outline again and again. */
+iso_status iso_shell_widen(iso_region *out, const iso_region *low, const iso_region *high,
+                           iso_planar_scratch *scratch) {
+    if (!same_outline(low, high))
+        return iso_boolean(out, ISO_INTERSECTION, low, high, scratch);
+    iso_region_clear(out);
+    for (int32_t c = 0; c < low->count; c++) {
+        ISO_TRY(iso_region_add(out, low->point + low->first[c], low->first[c + 1] - low->first[c]));
+        out->parent[c] = low->parent[c];
+    }
+    return ISO_OK;
 }
