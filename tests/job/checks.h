@@ -94,6 +94,46 @@ static inline void check_box(const print *p, const shape *s) {
     CHECK_EQUAL(0, outside);
 }
 
+typedef struct place_faults {
+    int outside, wall_off;
+} place_faults;
+
+/* The middle of a drawn piece lies within the section; the outermost wall half a bead inside. What
+ * outlines and arcs may be off is allowed. */
+static inline void check_place(place_faults *faults, const print *p, const print_move *m,
+                               const double (*piece)[4], int64_t count) {
+    double x = (m->ax + m->bx) / 2, y = (m->ay + m->by) / 2;
+    double off = p->options.gcode_resolution + 0.002;
+    double distance = section_distance(piece, count, x, y);
+    faults->outside += section_winding(piece, count, x, y) <= 0 && distance > off;
+    faults->wall_off +=
+        m->role == ISO_ROLE_EXTERNAL_PERIMETER && fabs(distance - m->width / 2) > off;
+}
+
+/* Some hundred places of the print against the sections of the model. */
+static inline void check_places(const print *p, const shape *s) {
+    enum { PLACES = 600 };
+    double(*piece)[4] = malloc((size_t)(s->count + 1) * sizeof *piece), top = 0;
+    shape_box3 b = shape_bounds(s);
+    iso_vec2 center = iso_options_center(&p->options);
+    double dx = center.x - (b.min[0] + b.max[0]) / 2, dy = center.y - (b.min[1] + b.max[1]) / 2;
+    place_faults faults = {0};
+    int32_t step = p->move_count / PLACES + 1;
+    for (int32_t l = 0; l < p->level_count; l++) {
+        double height = p->level[l].height;
+        int64_t count = shape_section(piece, s, b.min[2] + top + height / 2);
+        top += height;
+        for (int64_t i = 0; i < count; i++)
+            piece[i][0] += dx, piece[i][2] += dx, piece[i][1] += dy, piece[i][3] += dy;
+        for (int32_t i = p->level[l].first; i < p->level[l + 1].first; i++)
+            if (i % step == 0 && move_chosen(&p->move[i], -1, -1))
+                check_place(&faults, p, &p->move[i], (const double(*)[4])piece, count);
+    }
+    CHECK_EQUAL(0, faults.outside);
+    CHECK_EQUAL(0, faults.wall_off);
+    free(piece);
+}
+
 static inline void print_check(const print *p, const shape *s) {
     if (!CHECK_EQUAL(ISO_OK, p->status)) {
         fprintf(stderr, "    %s\n", p->message);
@@ -103,6 +143,7 @@ static inline void print_check(const print *p, const shape *s) {
     check_totals(p);
     check_levels(p);
     check_box(p, s);
+    check_places(p, s);
     double layered = shape_layered_volume(s, p);
     /* outlines may be thinned by 0.4 resolutions, docs/how-it-works.md, and are rounded */
     double edge = shape_surface(s) * (0.4 * p->options.gcode_resolution + 1e-4);

@@ -325,23 +325,57 @@ static void cut_edge(double at[2], const float *a, const float *b, double z) {
     at[1] = a[1] + t * ((double)b[1] - a[1]);
 }
 
+/* Material lies on the left of each piece. */
+static int cut_triangle(double piece[4], const float *v, double z) {
+    int cut = 0;
+    for (int k = 0; k < 3; k++) {
+        const float *a = v + 3 * k, *b = v + 3 * ((k + 1) % 3);
+        int up = a[2] <= z && b[2] > z, down = a[2] > z && b[2] <= z;
+        if (up)
+            cut_edge(piece + 2, a, b, z);
+        if (down)
+            cut_edge(piece, a, b, z);
+        cut += up || down;
+    }
+    return cut == 2;
+}
+
+int64_t shape_section(double (*piece)[4], const shape *s, double z) {
+    int64_t count = 0;
+    for (int64_t t = 0; t < s->count; t++)
+        count += cut_triangle(piece[count], s->triangle + 9 * t, z);
+    return count;
+}
+
+int section_winding(const double (*piece)[4], int64_t count, double x, double y) {
+    int winding = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const double *p = piece[i];
+        int up = p[1] <= y && p[3] > y, down = p[1] > y && p[3] <= y;
+        double side = (p[2] - p[0]) * (y - p[1]) - (p[3] - p[1]) * (x - p[0]);
+        winding += (up && side > 0) - (down && side < 0);
+    }
+    return winding;
+}
+
+double section_distance(const double (*piece)[4], int64_t count, double x, double y) {
+    double least = 1e9;
+    for (int64_t i = 0; i < count; i++) {
+        const double *p = piece[i];
+        double ux = p[2] - p[0], uy = p[3] - p[1], vx = x - p[0], vy = y - p[1];
+        double squared = ux * ux + uy * uy;
+        double t = squared > 0 ? fmin(1, fmax(0, (ux * vx + uy * vy) / squared)) : 0;
+        least = fmin(least, hypot(vx - t * ux, vy - t * uy));
+    }
+    return least;
+}
+
 double shape_area_at(const shape *s, double z) {
     double sum = 0, ox = s->triangle[0], oy = s->triangle[1];
     for (int64_t t = 0; t < s->count; t++) {
-        const float *v = s->triangle + 9 * t;
-        double from[2] = {0}, to[2] = {0};
-        int cut = 0;
-        for (int k = 0; k < 3; k++) {
-            const float *a = v + 3 * k, *b = v + 3 * ((k + 1) % 3);
-            int up = a[2] <= z && b[2] > z, down = a[2] > z && b[2] <= z;
-            if (up)
-                cut_edge(to, a, b, z);
-            if (down)
-                cut_edge(from, a, b, z);
-            cut += up || down;
-        }
-        if (cut == 2)
-            sum += (from[0] - ox) * (to[1] - oy) - (to[0] - ox) * (from[1] - oy);
+        double p[4];
+        if (cut_triangle(p, s->triangle + 9 * t, z))
+            sum += (p[0] - ox) * (p[3] - oy) - (p[2] - ox) * (p[1] - oy);
     }
     return sum / 2;
 }

@@ -79,6 +79,11 @@ shape_box3 shape_bounds(const shape *s);
 /* Area at height z of what the triangles enclose, corners at z counting as below: each triangle
  * adds its own piece of the contour integral, whatever its neighbours are. */
 double shape_area_at(const shape *s, double z);
+/* The section's pieces, x y x y each: how many, at most s->count. */
+int64_t shape_section(double (*piece)[4], const shape *s, double z);
+/* Winding number of the pieces around a point, and its distance to the nearest. */
+int section_winding(const double (*piece)[4], int64_t count, double x, double y);
+double section_distance(const double (*piece)[4], int64_t count, double x, double y);
 double shape_volume(const shape *s);
 double shape_surface(const shape *s); /* mm^2 */
 /* Sum of the sections in the middles of the print's layers times their heights. */
