@@ -229,7 +229,8 @@ static iso_shell_side side_of(const iso_job *job, int32_t bottom, int32_t layers
 static iso_status fill_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
     int32_t index = job->begin + (int32_t)number;
-    iso_shell_neighbours around = {.above = side_of(job, index + 1, job->top),
+    iso_shell_neighbours around = {.own = &layer_at(job, index)->run[0],
+                                   .above = side_of(job, index + 1, job->top),
                                    .below = side_of(job, index - job->bottom, job->bottom)};
     if (job->top > 0 && index + 1 < job->levels.count)
         around.next = &layer_at(job, index + 1)->run[0];

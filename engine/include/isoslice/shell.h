@@ -19,6 +19,7 @@ typedef struct iso_shell_side {
 } iso_shell_side;
 
 typedef struct iso_shell_neighbours {
+    const iso_region *own;  /* outline of the layer itself, coarse as the others; around its fill */
     const iso_region *next; /* outline of the layer right above; NULL: none */
     iso_shell_side above, below;
 } iso_shell_neighbours;
@@ -32,6 +33,7 @@ typedef struct iso_shell {
     iso_region top;    /* nothing right above */
     iso_region solid;  /* the rest of the shells */
     iso_region sparse; /* covered on both sides */
+    iso_region spare;  /* kept for its capacity alone */
 } iso_shell;
 
 /* Split `fill` into the three, disjoint regions; zero-initialise the shell, iso_shell_free at the
