@@ -58,13 +58,21 @@ static double distance_to(const iso_region *region, double x, double y) {
     return least;
 }
 
+/* The layers around the fill, nearest first; those beyond the last one are missing. */
+typedef struct stack {
+    const iso_region *const *above; /* [above_count], at most `top` */
+    const iso_region *const *below; /* [below_count], at most `bottom` */
+    int32_t above_count, below_count;
+    int32_t top, bottom;   /* layers that the shells count */
+    const iso_region *own; /* the layer's outline; NULL: its fill, no less */
+} stack;
+
 typedef struct place {
     int in_fill, next, above, below; /* held by the layer right above; by all of each side */
     double distance;                 /* to the nearest edge of all */
 } place;
 
-static place place_at(const iso_region *fill, const iso_shell_neighbours *around, double x,
-                      double y) {
+static place place_at(const iso_region *fill, const stack *around, double x, double y) {
     place p = {winding_at(fill, x, y) > 0, around->above_count > 0,
                around->above_count >= around->top, around->below_count >= around->bottom,
                distance_to(fill, x, y)};
@@ -82,9 +90,8 @@ static place place_at(const iso_region *fill, const iso_shell_neighbours *around
 }
 
 /* Each place of the fill lies in one of the three, the right one unless an edge is too near. */
-static void check_places(const iso_shell *shell, const iso_region *fill,
-                         const iso_shell_neighbours *around, const iso_shell_options *options,
-                         double half) {
+static void check_places(const iso_shell *shell, const iso_region *fill, const stack *around,
+                         const iso_shell_options *options, double half) {
     int32_t wrong[4] = {0}, looked_at = 0;
     double narrow = options->narrowest / 2 + 3, reach = 2.0 * (narrow + options->anchor) + 3;
     for (double x = -half + 0.0371; x < half; x += half / 31)
@@ -111,6 +118,37 @@ static void check_places(const iso_shell *shell, const iso_region *fill,
         CHECK_EQUAL(0, wrong[i]);
 }
 
+enum { LEVELS = 4, MOST = 8 };
+
+/* Runs of layers, level by level, and the two that cover all of a side. */
+typedef struct runs {
+    iso_region run[LEVELS][MOST];
+    iso_shell_side side;
+} runs;
+
+static void make_runs(runs *r, const iso_region *const *list, int32_t count, int32_t layers) {
+    *r = (runs){.side = {.layers = layers, .missing = layers - count}};
+    iso_region nothing = {0};
+    for (int32_t i = 0; i < count; i++)
+        CHECK_OK(iso_boolean(&r->run[0][i], ISO_UNION, list[i], &nothing, scratch));
+    for (int32_t k = 1; k < LEVELS; k++)
+        for (int32_t i = 0; i + (1 << k) <= count; i++)
+            CHECK_OK(iso_shell_widen(&r->run[k][i], &r->run[k - 1][i],
+                                     &r->run[k - 1][i + (1 << (k - 1))], scratch));
+    int32_t level = iso_shell_level(layers), length = 1 << level;
+    if (r->side.missing > 0 || layers == 0)
+        return;
+    r->side.cover[r->side.count++] = &r->run[level][0];
+    if (length < layers)
+        r->side.cover[r->side.count++] = &r->run[level][layers - length];
+}
+
+static void free_runs(runs *r) {
+    for (int32_t k = 0; k < LEVELS; k++)
+        for (int32_t i = 0; i < MOST; i++)
+            iso_region_free(&r->run[k][i]);
+}
+
 /* Regions, disjoint by the kernel's word, and nothing lost but slivers along the cuts. */
 static void check_parts(const iso_shell *shell, const iso_region *fill) {
     const iso_region *part[] = {&shell->top, &shell->solid, &shell->sparse};
@@ -128,9 +166,18 @@ static void check_parts(const iso_shell *shell, const iso_region *fill) {
     iso_region_free(&common);
 }
 
-static void split(iso_shell *shell, const iso_region *fill, const iso_shell_neighbours *around,
+static void split(iso_shell *shell, const iso_region *fill, const stack *around,
                   const iso_shell_options *options, double half) {
-    CHECK_OK(iso_shell_split(shell, fill, around, options, scratch));
+    runs above, below;
+    make_runs(&above, around->above, around->above_count, around->top);
+    make_runs(&below, around->below, around->below_count, around->bottom);
+    iso_shell_neighbours neighbours = {.own = around->own ? around->own : fill,
+                                       .next = around->above_count > 0 ? around->above[0] : NULL,
+                                       .above = above.side,
+                                       .below = below.side};
+    CHECK_OK(iso_shell_split(shell, fill, &neighbours, options, scratch));
+    free_runs(&above);
+    free_runs(&below);
     check_parts(shell, fill);
     check_places(shell, fill, around, options, half);
 }
@@ -145,7 +192,7 @@ static void test_stepped_pyramid(void) {
     const iso_region *above[] = {&step[1], &step[2], &step[3]};
     iso_shell shell = {0};
     for (int32_t top = 1; top <= 3; top++) {
-        iso_shell_neighbours around = {.above = above, .above_count = top, .top = top};
+        stack around = {.above = above, .above_count = top, .top = top};
         split(&shell, &fill, &around, &usual, 21);
         double last = 20 - 5.0 * top;
         CHECK_NEAR(36 * 36 - 30 * 30, area_of(&shell.top), 1e-3);
@@ -164,7 +211,7 @@ static void test_overhanging_steps(void) {
     const iso_region *below[] = {&step[1], &step[2], &step[3]};
     iso_shell shell = {0};
     for (int32_t bottom = 1; bottom <= 3; bottom++) {
-        iso_shell_neighbours around = {.below = below, .below_count = bottom, .bottom = bottom};
+        stack around = {.below = below, .below_count = bottom, .bottom = bottom};
         split(&shell, &fill, &around, &usual, 21);
         double last = 20 - 5.0 * bottom;
         CHECK_NEAR(0, area_of(&shell.top), 1e-9);
@@ -185,7 +232,7 @@ static void test_roof(void) {
         add_box(&step[i], -10 + 0.3 * i, -15, 10 - 0.3 * i, 15, 0);
     add_box(&fill, -10, -14, 10, 14, 0);
     const iso_region *above[] = {&step[1], &step[2], &step[3]};
-    iso_shell_neighbours around = {.above = above, .above_count = 3, .top = 3};
+    stack around = {.above = above, .above_count = 3, .top = 3};
     iso_shell_options options = {.narrowest = 2000};
     iso_shell shell = {0};
     split(&shell, &fill, &around, &options, 16);
@@ -210,8 +257,7 @@ static void test_cube(void) {
     iso_shell shell = {0};
     for (int32_t i = 0; i < LAYERS; i++) {
         const iso_region *above[TOP], *below[BOTTOM];
-        iso_shell_neighbours around = {
-            .above = above, .below = below, .top = TOP, .bottom = BOTTOM};
+        stack around = {.above = above, .below = below, .top = TOP, .bottom = BOTTOM};
         for (; around.above_count < TOP && i + around.above_count + 1 < LAYERS;)
             above[around.above_count++] = i % 2 ? &outline : &other;
         for (; around.below_count < BOTTOM && i - around.below_count > 0;)
@@ -229,7 +275,7 @@ static void test_cube(void) {
 }
 
 /* One outline of three differs, in every place among the equal ones. */
-static void test_equal_outlines_count_once(void) {
+static void test_one_outline_that_differs(void) {
     iso_region wide = square(10), same = square(10), less = square(6), fill = square(9);
     iso_shell shell = {0};
     for (int odd = 0; odd < 4; odd++)
@@ -237,7 +283,7 @@ static void test_equal_outlines_count_once(void) {
             const iso_region *list[4];
             for (int i = 0; i < 4; i++)
                 list[i] = i == odd ? &less : i % 2 ? &wide : &same;
-            iso_shell_neighbours around = {.above = list, .below = list};
+            stack around = {.above = list, .below = list};
             *(side ? &around.below_count : &around.above_count) = 4;
             *(side ? &around.bottom : &around.top) = 4;
             split(&shell, &fill, &around, &usual, 11);
@@ -264,7 +310,7 @@ static void test_hole_above(void) {
     iso_region pierced = square(10), whole = square(10), empty = {0}, fill = square(9);
     add_box(&pierced, -3, -2, 4, 5, 1);
     const iso_region *above[] = {&pierced, &whole};
-    iso_shell_neighbours around = {.above = above, .above_count = 2, .top = 2};
+    stack around = {.above = above, .above_count = 2, .top = 2};
     iso_shell shell = {0};
     split(&shell, &fill, &around, &usual, 11);
     CHECK_NEAR(49, area_of(&shell.top), 1e-3);
@@ -289,11 +335,13 @@ static void test_hole_above(void) {
 static void test_none(void) {
     iso_region outline = square(10), fill = square(9), nothing = {0};
     const iso_region *list[] = {&outline};
-    iso_shell_neighbours off = {0}, on = {list, list, 1, 1, 1, 1};
+    stack off = {0}, on = {list, list, 1, 1, 1, 1, &outline};
     iso_shell shell = {0};
     split(&shell, &fill, &off, &usual, 11);
     CHECK_NEAR(324, area_of(&shell.sparse), 1e-9);
-    CHECK_OK(iso_shell_split(&shell, &nothing, &on, &usual, scratch));
+    iso_shell_neighbours neighbours = {
+        &outline, &outline, {1, 0, 1, {&outline}}, {1, 0, 1, {&outline}}};
+    CHECK_OK(iso_shell_split(&shell, &nothing, &neighbours, &usual, scratch));
     CHECK(shell.top.count == 0 && shell.solid.count == 0 && shell.sparse.count == 0);
     on.above_count = on.below_count = 0;
     split(&shell, &fill, &on, &usual, 11);
@@ -312,7 +360,7 @@ static void test_narrow_strips_and_anchors(void) {
             iso_region above = {0};
             add_box(&above, -12, -12, 10 - ledge / 1e4, 12, 0);
             const iso_region *list[] = {&above};
-            iso_shell_neighbours around = {.above = list, .above_count = 1, .top = 1};
+            stack around = {.above = list, .above_count = 1, .top = 1};
             iso_shell_options options = {.narrowest = 4100, .anchor = anchor};
             split(&shell, &fill, &around, &options, 11);
             double width = ledge > 4100 ? (ledge + anchor) / 1e4 : 0;
@@ -328,7 +376,7 @@ static void test_narrow_strips_and_anchors(void) {
 static void test_top_comes_first(void) {
     iso_region outline = square(10), fill = square(9), above = square(4);
     const iso_region *list[] = {&above, &above, &above};
-    iso_shell_neighbours around = {.above = list, .above_count = 3, .top = 3};
+    stack around = {.above = list, .above_count = 3, .top = 3};
     iso_shell_options options = {.narrowest = 4000, .anchor = 10000};
     iso_shell shell = {0};
     split(&shell, &fill, &around, &options, 11);
@@ -379,11 +427,15 @@ static void test_random_outlines(void) {
             list[i] = &outline[i + 1];
         iso_offset_options inset = iso_offset_defaults(-6000);
         CHECK_OK(iso_offset(&fill, &outline[0], &inset, scratch));
-        iso_shell_neighbours around = {.above = list, .below = list + 3};
+        stack around = {.above = list, .below = list + 3};
         around.above_count = trial % 4;
         around.below_count = trial / 4 % 4;
         around.top = around.above_count + (trial % 5 == 0);
         around.bottom = around.below_count + (trial % 7 == 0);
+        around.own = &outline[0];
+        for (int i = 0; i < 6; i++)
+            if (i % 3 == trial % 5) /* an upright wall among the others */
+                list[i] = &outline[0];
         iso_shell_options options = {.narrowest = 1000 * (trial % 6), .anchor = 2000 * (trial % 3)};
         iso_shell shell = {0};
         split(&shell, &fill, &around, &options, 16);
@@ -394,11 +446,57 @@ static void test_random_outlines(void) {
     }
 }
 
+/* ---- runs ---- */
+
+static void test_levels(void) {
+    CHECK_EQUAL(0, iso_shell_level(0));
+    CHECK_EQUAL(30, iso_shell_level(INT32_MAX));
+    for (int32_t layers = 1; layers < 5000; layers++) {
+        int32_t level = iso_shell_level(layers);
+        CHECK(1 << level <= layers && layers < 2 << level);
+    }
+}
+
+static int same_region(const iso_region *a, const iso_region *b) {
+    return a->count == b->count &&
+           memcmp(a->first, b->first, (size_t)(a->count + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->point, b->point, (size_t)a->first[a->count] * sizeof *a->point) == 0 &&
+           memcmp(a->parent, b->parent, (size_t)a->count * sizeof *a->parent) == 0;
+}
+
+/* What two outlines share; of two like ones, the same to the point. */
+static void test_widening(void) {
+    iso_region shared = {0}, nothing = {0};
+    for (int trial = 0; trial < 12; trial++) {
+        iso_region a = random_region(), b = random_region();
+        CHECK_OK(iso_shell_widen(&shared, &a, &b, scratch));
+        CHECK_OK(iso_region_validate(&shared, scratch));
+        int wrong = 0;
+        for (double x = -15; x < 15; x += 0.717)
+            for (double y = -15; y < 15; y += 0.693) {
+                double u = floor(x * MM) + 0.5, v = floor(y * MM) + 0.5;
+                int both = winding_at(&a, u, v) > 0 && winding_at(&b, u, v) > 0;
+                wrong += winding_at(&shared, u, v) != both &&
+                         fmin(distance_to(&a, u, v), distance_to(&b, u, v)) > 3;
+            }
+        CHECK_EQUAL(0, wrong);
+        CHECK_OK(iso_shell_widen(&shared, &a, &a, scratch));
+        CHECK(same_region(&a, &shared));
+        CHECK_OK(iso_shell_widen(&shared, &a, &nothing, scratch));
+        CHECK_EQUAL(0, shared.count);
+        CHECK_OK(iso_shell_widen(&shared, &nothing, &nothing, scratch));
+        CHECK_EQUAL(0, shared.count);
+        iso_region_free(&a);
+        iso_region_free(&b);
+    }
+    iso_region_free(&shared);
+}
+
 static void test_no_memory(void) {
     iso_region outline[] = {random_region(), random_region(), random_region()};
     iso_region fill = random_region();
-    const iso_region *list[] = {&outline[0], &outline[1], &outline[2]};
-    iso_shell_neighbours around = {list, list + 1, 2, 2, 2, 2};
+    iso_shell_neighbours around = {
+        &fill, &outline[0], {2, 0, 2, {&outline[1], &outline[0]}}, {1, 0, 1, {&outline[2]}}};
     iso_status status = ISO_NO_MEMORY;
     int64_t n = 0;
     for (; status == ISO_NO_MEMORY && n < 2000; n++) {
@@ -430,12 +528,14 @@ int main(void) {
     RUN(test_overhanging_steps);
     RUN(test_roof);
     RUN(test_cube);
-    RUN(test_equal_outlines_count_once);
+    RUN(test_one_outline_that_differs);
     RUN(test_hole_above);
     RUN(test_none);
     RUN(test_narrow_strips_and_anchors);
     RUN(test_top_comes_first);
     RUN(test_random_outlines);
+    RUN(test_levels);
+    RUN(test_widening);
     RUN(test_no_memory);
     iso_planar_scratch_free(scratch);
     return check_verdict();
