@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "config/spelling.h"
+#include "config/settings.h"
 #include "config/value.h"
 
 static iso_options options, other;
@@ -341,6 +342,20 @@ static void test_speeds_follow_prusaslicers_rules(void) {
     CHECK_NEAR(32, iso_options_speed(&options, ISO_ROLE_INTERNAL_INFILL, false, true), 1e-12);
 }
 
+static void test_percent_of_the_first_layer_is_of_each_speed(void) {
+    iso_options_defaults(&options);
+    CHECK_OK(iso_options_set(&options, "first_layer_speed", "40%", "test"));
+    iso_gcode_options gcode = settings_of_gcode(&options, "", "", 0);
+    CHECK_NEAR(12, gcode.first_layer_speed[ISO_ROLE_EXTERNAL_PERIMETER], 1e-12);
+    CHECK_NEAR(24, gcode.first_layer_speed[ISO_ROLE_PERIMETER], 1e-12);
+    CHECK_NEAR(32, gcode.first_layer_speed[ISO_ROLE_INTERNAL_INFILL], 1e-12);
+    CHECK_NEAR(6, gcode.first_layer_small_perimeter_speed, 1e-12);
+    CHECK_OK(iso_options_set(&options, "first_layer_speed", "25", "test"));
+    gcode = settings_of_gcode(&options, "", "", 0);
+    CHECK_NEAR(25, gcode.first_layer_speed[ISO_ROLE_INTERNAL_INFILL], 1e-12);
+    CHECK_NEAR(25, gcode.first_layer_small_perimeter_speed, 1e-12);
+}
+
 static void test_heights_centre_and_overlap(void) {
     static double height[ISO_NUMBERS_MAX + 1];
     iso_options_defaults(&options);
@@ -424,6 +439,7 @@ int main(void) {
     RUN(test_only_changed_options_are_printed);
     RUN(test_widths_follow_prusaslicers_rules);
     RUN(test_speeds_follow_prusaslicers_rules);
+    RUN(test_percent_of_the_first_layer_is_of_each_speed);
     RUN(test_heights_centre_and_overlap);
     RUN(test_options_that_do_not_go_together_are_refused);
     RUN(test_placeholders_are_filled_in);

@@ -14,13 +14,14 @@ static iso_gcode_options usual(void) {
     o.speed[ISO_ROLE_PERIMETER] = 60;
     o.speed[ISO_ROLE_BRIDGE_INFILL] = 20;
     o.small_perimeter_speed = 15;
-    o.first_layer_speed = 25;
+    for (int role = 0; role < ISO_ROLE_COUNT; role++)
+        o.first_layer_speed[role] = 25;
+    o.first_layer_small_perimeter_speed = 25;
     o.slowdown_below_layer_time = 5;
     o.fan_below_layer_time = 65;
     o.min_print_speed = 10;
     o.min_fan_speed = 40;
     o.max_fan_speed = 100;
-    o.bridge_fan_speed = 80;
     o.disable_fan_first_layers = 3;
     return o;
 }
@@ -35,15 +36,24 @@ static void test_speeds_of_long_layers(void) {
     CHECK_EQUAL(3600, pace.feed[INNER]);
     CHECK_NEAR(150, pace.time, 1e-9);
     CHECK_EQUAL(0, pace.fan);
-    CHECK_EQUAL(80, pace.bridge_fan);
     iso_cooling_pace(&pace, &work, &o, 0);
     for (int s = 0; s < ISO_SPEED_SLOTS; s++)
         CHECK_EQUAL(1500, pace.feed[s]);
-    CHECK_EQUAL(0, pace.bridge_fan);
-    o.first_layer_speed = 0;
+}
+
+static void test_speeds_of_the_first_layer_role_by_role(void) {
+    iso_gcode_options o = usual();
+    iso_layer_work work = {.length = {[OUTER] = 3000, [INNER] = 3000}};
+    iso_layer_pace pace;
+    o.first_layer_speed[ISO_ROLE_EXTERNAL_PERIMETER] = 12;
+    o.first_layer_small_perimeter_speed = 6;
     iso_cooling_pace(&pace, &work, &o, 0);
+    CHECK_EQUAL(720, pace.feed[OUTER]);
+    CHECK_EQUAL(360, pace.feed[OUTER + 1]);
+    CHECK_EQUAL(1500, pace.feed[INNER]);
+    CHECK_EQUAL(360, pace.feed[INNER + 1]);
+    iso_cooling_pace(&pace, &work, &o, 1);
     CHECK_EQUAL(1800, pace.feed[OUTER]);
-    CHECK_EQUAL(900, pace.feed[OUTER + 1]);
 }
 
 static void test_short_layers_take_the_least_time(void) {
@@ -144,6 +154,7 @@ static void test_empty_layer(void) {
 
 int main(void) {
     RUN(test_speeds_of_long_layers);
+    RUN(test_speeds_of_the_first_layer_role_by_role);
     RUN(test_short_layers_take_the_least_time);
     RUN(test_no_slower_than_the_least_speed);
     RUN(test_bridges_and_slow_roles_stay);

@@ -15,7 +15,8 @@ static iso_gcode_options plain(void) {
     iso_gcode_options o = iso_gcode_defaults();
     o.start_gcode = o.end_gcode = NULL;
     o.cooling = o.remaining_times = 0;
-    o.first_layer_speed = 0;
+    memcpy(o.first_layer_speed, o.speed, sizeof o.speed);
+    o.first_layer_small_perimeter_speed = o.small_perimeter_speed;
     return o;
 }
 

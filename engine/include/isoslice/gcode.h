@@ -17,8 +17,9 @@ typedef struct iso_gcode_options {
     int use_relative_e_distances;
 
     double speed[ISO_ROLE_COUNT];
-    double small_perimeter_speed; /* of perimeters with speed class 1 */
-    double first_layer_speed;     /* of all roles on it; 0: their own */
+    double small_perimeter_speed; /* of perimeters with speed class 1; 0: as the others */
+    double first_layer_speed[ISO_ROLE_COUNT];
+    double first_layer_small_perimeter_speed;
     double travel_speed;
     double travel_speed_z; /* 0: travel_speed */
 
@@ -33,7 +34,7 @@ typedef struct iso_gcode_options {
 
     int cooling; /* slow down and blow by layer time */
     int fan_always_on;
-    int min_fan_speed, max_fan_speed, bridge_fan_speed;
+    int min_fan_speed, max_fan_speed;
     int disable_fan_first_layers;
     double fan_below_layer_time, slowdown_below_layer_time, min_print_speed;
 

@@ -85,10 +85,13 @@ void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_
 }
 
 static void set_speeds(iso_gcode_options *g, const iso_options *options) {
-    for (int role = 0; role < ISO_ROLE_COUNT; role++)
+    for (int role = 0; role < ISO_ROLE_COUNT; role++) {
         g->speed[role] = iso_options_speed(options, (iso_role)role, false, false);
+        g->first_layer_speed[role] = iso_options_speed(options, (iso_role)role, false, true);
+    }
     g->small_perimeter_speed = iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, false);
-    g->first_layer_speed = iso_options_speed(options, ISO_ROLE_PERIMETER, false, true);
+    g->first_layer_small_perimeter_speed =
+        iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, true);
     g->travel_speed = options->travel_speed;
     g->travel_speed_z = options->travel_speed_z;
 }

@@ -1,9 +1,6 @@
 #include "gcode/cooling.h"
 
-static int32_t to_feed(double speed) {
-    double feed = speed * 60 + 0.5;
-    return feed < 1 ? 1 : (int32_t)feed;
-}
+#include "gcode/head.h"
 
 static int is_bridge(int slot) {
     int role = slot / 2;
@@ -12,10 +9,10 @@ static int is_bridge(int slot) {
 
 static double usual_speed(const iso_gcode_options *options, int slot, int32_t layer) {
     int role = slot / 2, wall = role <= ISO_ROLE_OVERHANG_PERIMETER;
-    double speed = options->speed[role];
-    if (wall && slot % 2 && options->small_perimeter_speed > 0)
-        speed = options->small_perimeter_speed;
-    return layer == 0 && options->first_layer_speed > 0 ? options->first_layer_speed : speed;
+    double speed = layer == 0 ? options->first_layer_speed[role] : options->speed[role];
+    double small =
+        layer == 0 ? options->first_layer_small_perimeter_speed : options->small_perimeter_speed;
+    return wall && slot % 2 && small > 0 ? small : speed;
 }
 
 static double time_of(const iso_layer_pace *pace, const iso_layer_work *work) {
@@ -69,16 +66,13 @@ static int fan_by_time(const iso_gcode_options *options, double time) {
 void iso_cooling_pace(iso_layer_pace *pace, const iso_layer_work *work,
                       const iso_gcode_options *options, int32_t layer) {
     for (int s = 0; s < ISO_SPEED_SLOTS; s++)
-        pace->feed[s] = to_feed(usual_speed(options, s, layer));
+        pace->feed[s] = iso_head_feed(usual_speed(options, s, layer));
     pace->time = time_of(pace, work);
     int blows = layer >= options->disable_fan_first_layers;
     pace->fan = blows ? fan_by_time(options, pace->time) : 0;
-    pace->bridge_fan = blows && options->cooling && options->bridge_fan_speed > 0
-                           ? options->bridge_fan_speed
-                           : pace->fan;
     if (options->cooling && pace->time < options->slowdown_below_layer_time) {
         slow_down(pace, work, options->slowdown_below_layer_time,
-                  to_feed(options->min_print_speed));
+                  iso_head_feed(options->min_print_speed));
         pace->time = time_of(pace, work);
     }
 }

@@ -20,8 +20,7 @@ typedef struct iso_layer_work {
 typedef struct iso_layer_pace {
     int32_t feed[ISO_SPEED_SLOTS]; /* mm/min */
     int fan;                       /* percent */
-    int bridge_fan;
-    double time; /* s at these feeds, acceleration left out */
+    double time;                   /* s at these feeds, acceleration left out */
 } iso_layer_pace;
 
 /* All extrusions but bridges are slowed alike, none below min_print_speed, so that the layer takes

@@ -2,7 +2,7 @@
 #include <isoslice/version.h>
 
 iso_gcode_options iso_gcode_defaults(void) {
-    return (iso_gcode_options){
+    iso_gcode_options options = {
         .flavour = ISO_FLAVOUR_MARLIN2,
         .use_relative_e_distances = 1,
         .speed = {[ISO_ROLE_EXTERNAL_PERIMETER] = 30,
@@ -19,7 +19,7 @@ iso_gcode_options iso_gcode_defaults(void) {
                   [ISO_ROLE_SUPPORT_INTERFACE] = 60,
                   [ISO_ROLE_CUSTOM] = 60},
         .small_perimeter_speed = 15,
-        .first_layer_speed = 30,
+        .first_layer_small_perimeter_speed = 30,
         .travel_speed = 130,
         .filament_diameter = 1.75,
         .filament_density = 1.24,
@@ -32,7 +32,6 @@ iso_gcode_options iso_gcode_defaults(void) {
         .cooling = 1,
         .min_fan_speed = 35,
         .max_fan_speed = 100,
-        .bridge_fan_speed = 100,
         .disable_fan_first_layers = 3,
         .fan_below_layer_time = 60,
         .slowdown_below_layer_time = 5,
@@ -48,4 +47,7 @@ iso_gcode_options iso_gcode_defaults(void) {
                      "G28 X0 ; home X axis\nM84 ; disable motors\n",
         .generator = "isoslice " ISO_VERSION,
     };
+    for (int role = 0; role < ISO_ROLE_COUNT; role++)
+        options.first_layer_speed[role] = 30;
+    return options;
 }

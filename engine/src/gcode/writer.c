@@ -62,8 +62,7 @@ static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const i
         return ISO_OK;
     if (w->clock > w->next_mark)
         ISO_TRY(mark_progress(w));
-    int bridge = path->role == ISO_ROLE_BRIDGE_INFILL || path->role == ISO_ROLE_OVERHANG_PERIMETER;
-    set_fan(w, bridge ? pace->bridge_fan : pace->fan);
+    set_fan(w, pace->fan);
     int32_t feed = pace->feed[iso_speed_slot(path->role, path->speed_class)];
     double drawn_before = w->head.bead_mm;
     iso_head_draw(&w->head, path, paths->vertex + path->first, w->length + path->first, feed);
