@@ -15,11 +15,11 @@
 #include "base/output.h"
 #include "base/parallel.h"
 #include "gcode/writer.h"
-#include "layer.h"
 #include "path/order.h"
 #include "planar/section.h"
+#include "window.h"
 
-enum { LAYERS_PER_THREAD = 8, RUN_LEVELS_MAX = 32 };
+enum { LAYERS_PER_THREAD = 8 };
 
 static const char *const stage_name[ISO_STAGE_COUNT] = {"read",   "slice", "regions", "walls",
                                                         "shells", "fill",  "order",   "write"};
@@ -39,14 +39,10 @@ typedef struct iso_job {
     iso_levels levels;
     double projected; /* mm^2 of all triangles seen from above */
 
-    int32_t block;                /* layers filled in one go */
-    int32_t top, bottom;          /* neighbours that the shells look at */
-    int32_t ring;                 /* >= block + top + bottom: layer i is at layer[i % ring] */
-    iso_layer *layer;             /* [ring] */
-    int32_t begin;                /* first layer of the parallel loop under way */
-    int32_t level;                /* and the level of its runs */
-    int32_t run_levels;           /* of each layer */
-    int32_t done[RUN_LEVELS_MAX]; /* layers whose runs of each level are made */
+    int32_t block; /* layers filled in one go */
+    iso_window window;
+    int32_t begin,
+        level; /* first layer of the parallel loop under way, and the level of its runs */
     iso_paths ordered;
     iso_output *output;
     iso_gcode_writer *writer;
@@ -181,64 +177,29 @@ static iso_status verify_volume(const iso_job *job) {
 
 /* ---- layers ---- */
 
-static iso_layer *layer_at(const iso_job *job, int32_t index) {
-    return &job->layer[index % job->ring];
-}
-
 static iso_status outline_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
     int32_t index = job->begin + (int32_t)number;
-    iso_layer *layer = layer_at(job, index);
+    iso_layer *layer = window_layer(&job->window, index);
     settings_of_layer(&layer->settings, job->options, index, job->levels.height[index]);
     return layer_outline(layer, &job->hand[worker], job->slices, job->model_count, index);
 }
 
-static int32_t least(int32_t a, int32_t b) {
-    return a < b ? a : b;
-}
-
-/* Level job->level of the runs that start at a layer. */
-static iso_status run_task(void *payload, int64_t number, int worker) {
+static iso_status widen_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
-    int32_t index = job->begin + (int32_t)number, level = job->level;
-    iso_layer *layer = layer_at(job, index);
-    const iso_layer *higher = layer_at(job, index + (1 << (level - 1)));
-    double begun = iso_stage_clock();
-    iso_status status = iso_shell_widen(&layer->run[level], &layer->run[level - 1],
-                                        &higher->run[level - 1], job->hand[worker].planar);
-    layer->seconds[ISO_STAGE_SHELLS] += iso_stage_clock() - begun;
-    return status;
-}
-
-/* The runs of the `layers` layers from `bottom` up: one if their number is a power of two, else two
- * that overlap. */
-static iso_shell_side side_of(const iso_job *job, int32_t bottom, int32_t layers) {
-    iso_shell_side side = {.layers = layers};
-    int32_t level = iso_shell_level(layers), length = 1 << level;
-    side.missing = bottom < 0 ? -bottom : 0;
-    if (bottom + layers > job->levels.count)
-        side.missing = bottom + layers - job->levels.count;
-    if (layers == 0 || side.missing > 0)
-        return side;
-    side.cover[side.count++] = &layer_at(job, bottom)->run[level];
-    if (length < layers)
-        side.cover[side.count++] = &layer_at(job, bottom + layers - length)->run[level];
-    return side;
+    return window_widen(&job->window, job->begin + (int32_t)number, job->level,
+                        job->hand[worker].planar);
 }
 
 static iso_status fill_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
     int32_t index = job->begin + (int32_t)number;
-    iso_shell_neighbours around = {.own = &layer_at(job, index)->run[0],
-                                   .above = side_of(job, index + 1, job->top),
-                                   .below = side_of(job, index - job->bottom, job->bottom)};
-    if (job->top > 0 && index + 1 < job->levels.count)
-        around.next = &layer_at(job, index + 1)->run[0];
-    return layer_fill(layer_at(job, index), &job->hand[worker], &around);
+    iso_shell_neighbours around = window_around(&job->window, index);
+    return layer_fill(window_layer(&job->window, index), &job->hand[worker], &around);
 }
 
 static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) {
-    iso_layer *layer = layer_at(job, index);
+    iso_layer *layer = window_layer(&job->window, index);
     double begun = iso_stage_clock();
     ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, position, &job->hand[0].arena));
     double ordered = iso_stage_clock();
@@ -256,31 +217,34 @@ static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) 
     return ISO_OK;
 }
 
+static int32_t least(int32_t a, int32_t b) {
+    return a < b ? a : b;
+}
+
 /* Outlines up to `end`, and the runs that lie wholly below it. */
 static iso_status advance(iso_job *job, int32_t end) {
-    job->begin = job->done[0];
-    ISO_TRY(iso_parallel_for(job->pool, end - job->begin, outline_task, job));
-    job->done[0] = end;
-    for (job->level = 1; job->level < job->run_levels; job->level++) {
-        int32_t whole = end - (1 << job->level) + 1;
-        job->begin = job->done[job->level];
-        if (whole <= job->begin)
+    iso_window *window = &job->window;
+    for (job->level = 0; job->level < window->levels; job->level++) {
+        int32_t wide = window_wide_end(job->level, end);
+        job->begin = window->made[job->level];
+        if (wide <= job->begin)
             break;
-        ISO_TRY(iso_parallel_for(job->pool, whole - job->begin, run_task, job));
-        job->done[job->level] = whole;
+        ISO_TRY(iso_parallel_for(job->pool, wide - job->begin,
+                                 job->level == 0 ? outline_task : widen_task, job));
+        window->made[job->level] = wide;
     }
     return ISO_OK;
 }
 
-/* A window of layers moves up: outlines run ahead by the height of the top shell, and stay until
- * the bottom shell above them is done. */
+/* Outlines run ahead by the height of the top shell, and stay until the bottom shell above them is
+ * done. */
 static iso_status make_layers(iso_job *job) {
     iso_point position = {0, 0};
     int32_t count = job->levels.count;
     for (int32_t filled = 0; filled < count;) {
         int32_t end = least(filled + job->block, count);
         progress(job, 0.15 + 0.85 * filled / count, "layers");
-        ISO_TRY(advance(job, least(end + job->top, count)));
+        ISO_TRY(advance(job, least(end + job->window.top, count)));
         job->begin = filled;
         ISO_TRY(iso_parallel_for(job->pool, end - filled, fill_task, job));
         for (; filled < end; filled++)
@@ -338,7 +302,6 @@ static iso_status job_new(iso_job *job, int32_t input_count) {
     ISO_TRY(iso_pool_new(&job->pool, job->hooks->threads));
     job->threads = job->report->threads = iso_pool_threads(job->pool);
     job->block = LAYERS_PER_THREAD * job->threads;
-    settings_shells(&job->top, &job->bottom, job->options);
     ISO_TRY(ISO_ALLOCATE(job->mesh, input_count));
     memset(job->mesh, 0, (size_t)input_count * sizeof *job->mesh);
     ISO_TRY(ISO_ALLOCATE(job->slices, input_count));
@@ -350,20 +313,6 @@ static iso_status job_new(iso_job *job, int32_t input_count) {
     return ISO_OK;
 }
 
-/* Once the number of layers is known. A shell thicker than the print is as thick as the print. */
-static iso_status layers_new(iso_job *job) {
-    int32_t count = job->levels.count;
-    job->top = least(job->top, count);
-    job->bottom = least(job->bottom, count);
-    job->ring = least(job->block + job->top + job->bottom, count);
-    job->run_levels = 1 + iso_shell_level(job->top > job->bottom ? job->top : job->bottom);
-    ISO_TRY(ISO_ALLOCATE(job->layer, job->ring));
-    memset(job->layer, 0, (size_t)job->ring * sizeof *job->layer);
-    for (int32_t i = 0; i < job->ring; i++)
-        ISO_TRY(layer_new(&job->layer[i], job->run_levels));
-    return ISO_OK;
-}
-
 static void job_free(iso_job *job) {
     iso_gcode_writer_free(job->writer);
     iso_output_abandon(job->output);
@@ -371,15 +320,13 @@ static void job_free(iso_job *job) {
         iso_mesh_free(&job->mesh[i]);
     for (int32_t i = 0; job->slices && i < job->model_count; i++)
         iso_slices_free(&job->slices[i]);
-    for (int32_t i = 0; job->layer && i < job->ring; i++)
-        layer_free(&job->layer[i]);
+    window_free(&job->window);
     for (int32_t i = 0; job->hand && i < job->threads; i++)
         hand_free(&job->hand[i]);
     iso_paths_free(&job->ordered);
     iso_levels_free(&job->levels);
     iso_release(job->mesh);
     iso_release(job->slices);
-    iso_release(job->layer);
     iso_release(job->hand);
     iso_release(job->start);
     iso_release(job->end);
@@ -413,6 +360,9 @@ static iso_status load(iso_job *job, const char *const *input, int32_t input_cou
     double begun = iso_stage_clock();
     if (input_count < 1)
         return iso_fail(ISO_USAGE, "no model was given");
+    for (int k = 0; k < ISO_STAGE_COUNT;
+         k++) /* so that no report can fail once the output is there */
+        ISO_TRY(iso_report_add_stage(job->report, stage_name[k], 0, 0));
     ISO_TRY(iso_options_check(job->options));
     ISO_TRY(job_new(job, input_count));
     ISO_TRY(read_models(job, input));
@@ -421,7 +371,9 @@ static iso_status load(iso_job *job, const char *const *input, int32_t input_cou
     progress(job, 0.1, stage_name[ISO_STAGE_SLICE]);
     ISO_TRY(slice_models(job));
     ISO_TRY(verify_volume(job));
-    ISO_TRY(layers_new(job));
+    int32_t top, bottom;
+    settings_shells(&top, &bottom, job->options);
+    ISO_TRY(window_new(&job->window, job->levels.count, top, bottom, job->block));
     job->seconds[ISO_STAGE_READ] = read - begun;
     job->seconds[ISO_STAGE_SLICE] = iso_stage_clock() - read;
     return ISO_OK;

@@ -183,7 +183,7 @@ static void compare_outlines(figures *f, bench_part *part, const double *area) {
         iso_region_clear(raw);
         bench_must(section_add(raw, &part->slices, i), part->path);
         rounded += fabs(square_mm(raw) - area[i]);
-        thinned += fabs(part->layer[i].square_mm - area[i]);
+        thinned += fabs(window_layer(&part->window, i)->square_mm - area[i]);
         sum += area[i];
     }
     f->rounded = rounded / sum;
@@ -201,7 +201,7 @@ static void check_areas(check *c, figures *f, bench_part *part) {
         f->slice_area = fmax(f->slice_area, off);
         if (off > AREA_ALLOWED)
             complain(c, "layer %d: %.9g mm^2 instead of %.9g", i, found, area[i]);
-        sum += part->layer[i].square_mm * part->levels.height[i];
+        sum += window_layer(&part->window, i)->square_mm * part->levels.height[i];
     }
     compare_outlines(f, part, area);
     f->volume = sum / volume - 1;
@@ -230,11 +230,12 @@ static void check_regions(check *c, figures *f, bench_part *part) {
     if (iso_mesh_validate(&part->mesh) != ISO_OK || iso_slices_validate(&part->slices) != ISO_OK)
         complain(c, "%s", iso_error_message());
     for (int32_t i = 0; i < part->levels.count; i++) {
-        iso_layer *layer = &part->layer[i];
+        iso_layer *layer = window_layer(&part->window, i);
         iso_shell *shell = &part->hand.shell;
         check_region(c, f, part, &layer->region, "outline", i);
-        check_region(c, f, part, &layer->coarse, "coarse outline", i);
-        check_region(c, f, part, &layer->area, "area of the fill", i);
+        for (int32_t k = 0; k < part->window.levels; k++)
+            if (i < window_wide_end(k, part->levels.count))
+                check_region(c, f, part, &layer->run[k], "run of layers", i);
         part_fill(part, i);
         check_region(c, f, part, &shell->top, "top", i);
         check_region(c, f, part, &shell->solid, "solid", i);

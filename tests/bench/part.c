@@ -7,8 +7,6 @@
 
 #include "measure.h"
 
-enum { AROUND_MOST = 64 };
-
 void part_options(iso_options *options, double density) {
     static const char *const setting[][2] = {
         {"layer_height", "0.2"},
@@ -49,13 +47,18 @@ static void place(bench_part *part) {
 }
 
 static void outline(bench_part *part) {
-    part->layer = bench_allocate(part->levels.count * (int64_t)sizeof *part->layer);
-    memset(part->layer, 0, (size_t)part->levels.count * sizeof *part->layer);
-    for (int32_t i = 0; i < part->levels.count; i++) {
-        iso_layer *layer = &part->layer[i];
+    iso_window *window = &part->window;
+    int32_t top, bottom, count = part->levels.count;
+    settings_shells(&top, &bottom, part->options);
+    bench_must(window_new(window, count, top, bottom, count), part->path);
+    for (int32_t i = 0; i < count; i++) {
+        iso_layer *layer = window_layer(window, i);
         settings_of_layer(&layer->settings, part->options, i, part->levels.height[i]);
         bench_must(layer_outline(layer, &part->hand, &part->slices, 1, i), part->path);
     }
+    for (int32_t level = 1; level < window->levels; level++)
+        for (int32_t i = 0; i < window_wide_end(level, count); i++)
+            bench_must(window_widen(window, i, level, part->hand.planar), part->path);
 }
 
 void part_load(bench_part *part, const char *path, const iso_options *options) {
@@ -66,31 +69,17 @@ void part_load(bench_part *part, const char *path, const iso_options *options) {
     int32_t count = iso_options_heights(heights, options);
     bench_must(iso_levels_from_heights(&part->levels, heights, count, part->mesh.max.z), path);
     bench_must(iso_slice_planar(&part->slices, &part->mesh, &part->levels), path);
-    settings_shells(&part->top, &part->bottom, options);
     bench_must(hand_new(&part->hand), path);
     outline(part);
 }
 
-iso_shell_neighbours part_around(const bench_part *part, int32_t index, const iso_region **region) {
-    iso_shell_neighbours around = {
-        .top = part->top, .bottom = part->bottom, .above = region, .below = region + part->top};
-    for (int32_t i = 1; i <= part->top && index + i < part->levels.count; i++)
-        region[around.above_count++] = &part->layer[index + i].coarse;
-    for (int32_t i = 1; i <= part->bottom && index - i >= 0; i++)
-        region[part->top + around.below_count++] = &part->layer[index - i].coarse;
-    return around;
-}
-
 void part_fill(bench_part *part, int32_t index) {
-    const iso_region *region[AROUND_MOST];
-    iso_shell_neighbours around = part_around(part, index, region);
-    bench_must(layer_fill(&part->layer[index], &part->hand, &around), part->path);
+    iso_shell_neighbours around = window_around(&part->window, index);
+    bench_must(layer_fill(window_layer(&part->window, index), &part->hand, &around), part->path);
 }
 
 void part_free(bench_part *part) {
-    for (int32_t i = 0; i < part->levels.count; i++)
-        layer_free(&part->layer[i]);
-    free(part->layer);
+    window_free(&part->window);
     hand_free(&part->hand);
     iso_slices_free(&part->slices);
     iso_levels_free(&part->levels);

@@ -4,7 +4,7 @@
 
 #include <isoslice/config.h>
 
-#include "layer.h"
+#include "window.h"
 
 typedef struct bench_part {
     const char *path;
@@ -12,8 +12,7 @@ typedef struct bench_part {
     iso_mesh mesh; /* in its place on the bed */
     iso_levels levels;
     iso_slices slices;
-    int32_t top, bottom; /* neighbours that the shells look at */
-    iso_layer *layer;    /* [levels.count] outlined; filled too once part_fill was there */
+    iso_window window; /* of all layers: outlined; filled too once part_fill was there */
     iso_hand hand;
 } bench_part;
 
@@ -23,9 +22,6 @@ void part_options(iso_options *options, double density);
 
 /* Read, place, slice and outline. */
 void part_load(bench_part *part, const char *path, const iso_options *options);
-
-/* Outlines around a layer, as its shells need them; `region` has room for all of them. */
-iso_shell_neighbours part_around(const bench_part *part, int32_t index, const iso_region **region);
 
 /* Fill a layer, once. */
 void part_fill(bench_part *part, int32_t index);

@@ -140,7 +140,8 @@ static void simplify_all(void *payload) {
     bench_stages *s = payload;
     s->bytes = 0;
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        bench_must(iso_region_simplify(&s->out, &s->raw[i], s->part.layer[i].settings.thinning,
+        bench_must(iso_region_simplify(&s->out, &s->raw[i],
+                                       s->part.window.layer[i].settings.thinning,
                                        s->part.hand.planar),
                    "simplify");
         count_bytes(s, &s->raw[i]);
@@ -151,11 +152,11 @@ static void simplify_all(void *payload) {
 static void offset_all(bench_stages *s, int sign) {
     s->bytes = 0;
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        const iso_wall_options *wall = &s->part.layer[i].settings.wall;
+        const iso_wall_options *wall = &s->part.window.layer[i].settings.wall;
         iso_offset_options offset = iso_offset_defaults(sign * wall->external.width / 2);
         offset.join = ISO_JOIN_ROUND;
         offset.arc_tolerance = wall->arc_tolerance;
-        const iso_region *in = &s->part.layer[i].region;
+        const iso_region *in = &s->part.window.layer[i].region;
         bench_must(iso_offset(&s->out, in, &offset, s->part.hand.planar), "offset");
         count_bytes(s, in);
     }
@@ -169,23 +170,26 @@ static void offset_out(void *payload) {
     offset_all(payload, 1);
 }
 
+/* Runs of layers, then every layer's split. */
 static void split_all(void *payload) {
     bench_stages *s = payload;
-    const iso_region *region[64];
+    const iso_window *window = &s->part.window;
+    iso_planar_scratch *planar = s->part.hand.planar;
     iso_shell *shell = &s->part.hand.shell;
+    int32_t count = s->part.levels.count;
     s->bytes = 0;
-    for (int32_t i = 0; i < s->part.levels.count; i++) {
-        const iso_layer *layer = &s->part.layer[i];
-        iso_shell_neighbours around = part_around(&s->part, i, region);
-        bench_must(iso_shell_split(shell, &layer->area, &around, &layer->settings.shell,
-                                   s->part.hand.planar),
+    for (int32_t level = 1; level < window->levels; level++)
+        for (int32_t i = 0; i < window_wide_end(level, count); i++)
+            bench_must(window_widen(window, i, level, planar), "shells");
+    for (int32_t i = 0; i < count; i++) {
+        const iso_layer *layer = &window->layer[i];
+        iso_shell_neighbours around = window_around(window, i);
+        bench_must(iso_shell_split(shell, &layer->area, &around, &layer->settings.shell, planar),
                    "shells");
         s->bytes += bytes_of(&layer->area) + bytes_of(&shell->top) + bytes_of(&shell->solid) +
                     bytes_of(&shell->sparse);
-        for (int32_t k = 0; k < around.above_count; k++)
-            s->bytes += bytes_of(around.above[k]);
-        for (int32_t k = 0; k < around.below_count; k++)
-            s->bytes += bytes_of(around.below[k]);
+        for (int32_t k = 0; k < window->levels; k++)
+            s->bytes += bytes_of(&layer->run[k]);
     }
 }
 
@@ -200,17 +204,12 @@ static void measure_kernel(bench_stages *s, const char *name, void (*run)(void *
 
 static void measure_regions(bench_stages *s) {
     int64_t raw = 0, thinned = 0, split = 0;
-    const iso_region *region[64];
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        iso_shell_neighbours around = part_around(&s->part, i, region);
+        const iso_layer *layer = &s->part.window.layer[i];
         bench_must(section_add(&s->raw[i], &s->part.slices, i), s->part.path);
         raw += points_of(&s->raw[i]);
-        thinned += points_of(&s->part.layer[i].region);
-        split += points_of(&s->part.layer[i].area);
-        for (int32_t k = 0; k < around.above_count; k++)
-            split += points_of(around.above[k]);
-        for (int32_t k = 0; k < around.below_count; k++)
-            split += points_of(around.below[k]);
+        thinned += points_of(&layer->region);
+        split += points_of(&layer->area) + points_of(&layer->run[0]);
     }
     measure_kernel(s, "clean", clean_all, raw);
     measure_kernel(s, "simplify", simplify_all, raw);
@@ -222,7 +221,7 @@ static void measure_regions(bench_stages *s) {
 /* ---- fill ---- */
 
 static const iso_fill_options *fill_options(const bench_stages *s, int32_t i) {
-    const iso_layer_settings *settings = &s->part.layer[i].settings;
+    const iso_layer_settings *settings = &s->part.window.layer[i].settings;
     return s->solid ? &settings->solid : &settings->sparse[0];
 }
 
@@ -261,7 +260,7 @@ static int64_t count_fill_crossings(bench_stages *s) {
 
 static void measure_fill(bench_stages *s) {
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        const iso_layer *layer = &s->part.layer[i];
+        const iso_layer *layer = &s->part.window.layer[i];
         iso_offset_options inset = iso_offset_defaults(-layer->settings.fill_inset);
         inset.join = ISO_JOIN_ROUND;
         bench_must(iso_offset(&s->inside[i], &layer->area, &inset, s->part.hand.planar), "inset");
@@ -285,7 +284,7 @@ static void order_all(void *payload) {
     iso_point position = {0, 0};
     s->bytes = 0;
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        bench_must(iso_order_layer(&s->ordered[i], &s->part.layer[i].paths, &position,
+        bench_must(iso_order_layer(&s->ordered[i], &s->part.window.layer[i].paths, &position,
                                    &s->part.hand.arena),
                    "order");
         s->bytes += 2 * bytes_of_paths(&s->ordered[i]);
@@ -317,7 +316,7 @@ static void measure_writing(bench_stages *s) {
     int64_t paths = 0;
     for (int32_t i = 0; i < s->part.levels.count; i++) {
         part_fill(&s->part, i);
-        paths += s->part.layer[i].paths.count;
+        paths += s->part.window.layer[i].paths.count;
     }
     double seconds = bench_least(order_all, NULL, s);
     add_row(

@@ -61,7 +61,8 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
         s->sparse[pass].like.rank += pass;
     }
     s->fill_inset = solid.spacing / 2;
-    s->wall.fill_inset = -iso_units(iso_options_infill_overlap(options));
+    if (options->perimeters > 0) /* without walls there is nothing to bond with */
+        s->wall.fill_inset = -iso_units(iso_options_infill_overlap(options));
     s->shell = (iso_shell_options){.narrowest = full ? 2 * solid.spacing : solid.spacing,
                                    .anchor = full ? 0 : 2 * solid.spacing};
 }

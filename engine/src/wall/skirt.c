@@ -61,9 +61,14 @@ iso_status iso_skirt(iso_paths *paths, const iso_region *region, int32_t loops, 
     iso_offset_options offset = iso_offset_defaults(distance);
     offset.join = ISO_JOIN_ROUND;
     iso_region hull = {0}, loop = {0};
+    int32_t count = paths->count, vertices = paths->vertex_count;
     iso_status status = hull_of(&hull, region);
     if (status == ISO_OK)
         status = draw_skirt(paths, &hull, loops, &offset, bead, &loop, scratch);
+    if (status != ISO_OK) {
+        paths->count = count;
+        paths->vertex_count = vertices;
+    }
     iso_region_free(&hull);
     iso_region_free(&loop);
     return status;

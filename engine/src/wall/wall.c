@@ -67,7 +67,13 @@ static iso_status draw_walls(iso_paths *paths, iso_region *inside, iso_region *t
 iso_status iso_walls(iso_paths *paths, iso_region *inside, const iso_region *island,
                      const iso_wall_options *options, iso_planar_scratch *scratch) {
     iso_region turn[2] = {0};
+    int32_t count = paths->count, vertices = paths->vertex_count;
     iso_status status = draw_walls(paths, inside, turn, island, options, scratch);
+    if (status != ISO_OK) {
+        paths->count = count;
+        paths->vertex_count = vertices;
+        iso_region_clear(inside);
+    }
     iso_region_free(&turn[0]);
     iso_region_free(&turn[1]);
     return status;
