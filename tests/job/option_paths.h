@@ -253,6 +253,13 @@ static void first_layer_speed(const change *c) {
     check_speed(c->b, ISO_ROLE_PERIMETER, 0, 60);
 }
 
+/* In percent it is of each path's own speed. */
+static void first_layer_speed_in_percent(const change *c) {
+    check_speed(c->b, ISO_ROLE_PERIMETER, 1, 30);          /* of 60 */
+    check_speed(c->b, ISO_ROLE_EXTERNAL_PERIMETER, 1, 15); /* of 30 */
+    check_speed(c->b, SOLID, 1, 10);                       /* of 20 */
+}
+
 static void check_travel(const print *p, move_kind kind, double speed) {
     int32_t count = 0, wrong = 0;
     for (int32_t i = 0; i < p->move_count; i++)

@@ -112,6 +112,17 @@ static void test_density(void) {
     }
 }
 
+/* Without walls there is nothing to overlap: the fill ends half a spacing inside the outline. */
+static void test_no_overlap_without_walls(void) {
+    print p;
+    double box[4], s = spacing_of(0.45, 0.3);
+    print_cube(&p, "perimeters = 0\nfill_density = 100%");
+    CHECK(print_box(box, &p, ISO_ROLE_SOLID_INFILL, 10));
+    for (int k = 0; k < 4; k++)
+        CHECK_NEAR(100 + (k < 2 ? -1 : 1) * (side / 2 - s / 2), box[k], 0.02);
+    print_free(&p);
+}
+
 /* Distances of skirts to a convex part are those of the loops' middles. */
 static void test_skirt(void) {
     print p;
@@ -156,6 +167,7 @@ int main(void) {
     RUN(test_layers);
     RUN(test_shells);
     RUN(test_density);
+    RUN(test_no_overlap_without_walls);
     RUN(test_skirt);
     RUN(test_cavity_is_closed);
     CHECK(print_folder_remove());

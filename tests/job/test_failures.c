@@ -256,7 +256,7 @@ static void sweep(const char *settings, const shape *s) {
     iso_report_free(&whole);
     remove(output);
     CHECK(count > 50);
-    for (int64_t n = 0; n < count - 1; n++) {
+    for (int64_t n = 0; n < count; n++) {
         iso_report report = {0};
         iso_fail_allocation_after(n);
         iso_status status = iso_job_run(&report, &options, &path, 1, output, &hooks);
