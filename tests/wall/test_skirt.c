@@ -114,6 +114,8 @@ static void test_no_memory(void) {
         iso_fail_allocation_after(n);
         status = iso_skirt(&paths, &region, 2, 3 * MM, &bead, own);
         iso_fail_allocation_after(-1);
+        if (status != ISO_OK)
+            CHECK(paths.count == 0 && paths.vertex_count == 0);
         iso_planar_scratch_free(own);
         iso_paths_free(&paths);
     }

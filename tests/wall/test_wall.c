@@ -397,6 +397,8 @@ static void test_no_memory(void) {
         iso_fail_allocation_after(n);
         status = iso_walls(&paths, &inside, &region, &options, own);
         iso_fail_allocation_after(-1);
+        if (status != ISO_OK)
+            CHECK(paths.count == 0 && paths.vertex_count == 0 && inside.count == 0);
         iso_planar_scratch_free(own);
         iso_region_free(&inside);
         iso_paths_free(&paths);
