@@ -186,6 +186,26 @@ static void test_unwritable(void) {
     shape_free(&s);
 }
 
+/* One bad file of several fails the job; the report says how far it came. */
+static void test_second_file_is_bad(void) {
+    const char *path[] = {print_path("model.stl"), print_path("missing.stl")};
+    shape s = {0};
+    iso_options options;
+    iso_report report = {0};
+    solid_small(&s);
+    CHECK(shape_write_binary(&s, path[0]));
+    iso_options_defaults(&options);
+    const char *output = print_path("swept.gcode");
+    CHECK_STATUS(ISO_UNREADABLE, iso_job_run(&report, &options, path, 2, output, NULL));
+    CHECK(strstr(iso_error_message(), path[1]) != NULL);
+    CHECK(access(output, F_OK) != 0);
+    CHECK_EQUAL(1, report.input_count);
+    CHECK_EQUAL(0, report.layer_count);
+    CHECK_EQUAL(0, report.print.bytes);
+    iso_report_free(&report);
+    shape_free(&s);
+}
+
 static void test_bad_options(void) {
     shape s = {0};
     solid_small(&s);
@@ -288,6 +308,7 @@ int main(void) {
     RUN(test_too_large);
     RUN(test_odd_beds);
     RUN(test_unreadable);
+    RUN(test_second_file_is_bad);
     RUN(test_unsliceable);
     RUN(test_cube_without_a_triangle);
     RUN(test_unwritable);
