@@ -11,7 +11,8 @@
  *
  * A closing corner whose two copies meet within half of both edges is cut there at once: that is
  * the convolution of the region with the corner filled up to the circle that touches both edges,
- * which grows to the same. */
+ * which grows to the same. So is a whole fillet of short edges that all stay outside of that
+ * circle. */
 #include <math.h>
 
 #include <isoslice/planar.h>
@@ -42,6 +43,10 @@ iso_offset_options iso_offset_defaults(int32_t distance) {
 
 static double dot(iso_vec2 a, iso_vec2 b) {
     return a.x * b.x + a.y * b.y;
+}
+
+static double cross2(iso_vec2 a, iso_vec2 b) {
+    return a.x * b.y - a.y * b.x;
 }
 
 static iso_side side_of(iso_point a, iso_point b, double sign) {
@@ -116,27 +121,77 @@ static iso_status put_opening(iso_rawing *r, iso_point corner, const iso_side *i
     return put_square(r, corner, in, out);
 }
 
-static iso_status put_corner(iso_rawing *r, iso_point corner, const iso_side *in,
-                             const iso_side *out) {
-    double cosine = dot(in->along, out->along);
-    double sine = in->along.x * out->along.y - in->along.y * out->along.x;
-    /* straight back: an opening corner of half a turn */
-    if (sine * r->sign > 0 || (cosine < 0 && fabs(sine) < 1e-12))
-        return put_opening(r, corner, in, out, cosine);
-    double trim = cosine > -0.999 ? r->distance * fabs(sine) / (1 + cosine) : INFINITY;
-    if (2 * trim <= in->length && 2 * trim <= out->length) {
-        iso_vec2 sum = {in->shift.x + out->shift.x, in->shift.y + out->shift.y};
-        return put(r, corner, sum, r->distance / (1 + cosine));
+/* Straight back counts as an opening corner of half a turn. */
+static bool is_opening(const iso_rawing *r, const iso_side *in, const iso_side *out) {
+    double sine = cross2(in->along, out->along);
+    return sine * r->sign > 0 || (fabs(sine) < 1e-12 && dot(in->along, out->along) < 0);
+}
+
+enum { FILLET_EDGES = 24 }; /* short edges between the two that meet, at most */
+
+/* Where the shifted copies of the edges before `from` and after `to` meet, within half of both. */
+static bool copies_meet(iso_vec2 *meet, const iso_rawing *r, iso_point from, const iso_side *in,
+                        iso_point to, const iso_side *out) {
+    double sine = cross2(in->along, out->along);
+    iso_vec2 apart = {(double)from.x - to.x + r->distance * (in->shift.x - out->shift.x),
+                      (double)from.y - to.y + r->distance * (in->shift.y - out->shift.y)};
+    if (sine * r->sign > -1e-9)
+        return false;
+    double back = cross2(apart, out->along) / sine, ahead = cross2(in->along, apart) / sine;
+    *meet = (iso_vec2){from.x + r->distance * in->shift.x - back * in->along.x,
+                       from.y + r->distance * in->shift.y - back * in->along.y};
+    return back >= 0 && ahead >= 0 && 2 * back <= in->length && 2 * ahead <= out->length;
+}
+
+static bool stays_outside(const iso_rawing *r, iso_vec2 center, const iso_point *point,
+                          int32_t count) {
+    double least = (r->distance - 0.5) * (r->distance - 0.5);
+    for (int32_t i = 0; i < count; i++) {
+        double dx = point[i].x - center.x, dy = point[i].y - center.y;
+        if (dx * dx + dy * dy < least)
+            return false;
     }
-    ISO_TRY(put(r, corner, in->shift, r->distance));
-    return put(r, corner, out->shift, r->distance);
+    return true;
+}
+
+/* Cut the closing corner at point[i], or the fillet that starts there; *in becomes the edge after
+ * it. Returns the index of the corner's or the fillet's last point, or -1 if nothing can be cut. */
+static int32_t find_cut(iso_vec2 *meet, iso_side *in, const iso_rawing *r, const iso_point *point,
+                        int32_t count, int32_t i) {
+    iso_side before = *in;
+    for (int32_t last = i; last < count && last <= i + FILLET_EDGES; last++) {
+        iso_side out = side_of(point[last], point[last + 1 == count ? 0 : last + 1], r->sign);
+        if (is_opening(r, &before, &out))
+            return -1;
+        if (copies_meet(meet, r, point[i], in, point[last], &out) &&
+            stays_outside(r, *meet, point + i, last - i + 1)) {
+            *in = out;
+            return last;
+        }
+        before = out;
+    }
+    return -1;
 }
 
 static iso_status put_contour(iso_rawing *r, const iso_point *point, int32_t count) {
-    iso_side first = side_of(point[count - 1], point[0], r->sign), in = first;
+    iso_side in = side_of(point[count - 1], point[0], r->sign);
     for (int32_t i = 0; i < count; i++) {
-        iso_side out = i + 1 < count ? side_of(point[i], point[i + 1], r->sign) : first;
-        ISO_TRY(put_corner(r, point[i], &in, &out));
+        iso_side out = side_of(point[i], point[i + 1 == count ? 0 : i + 1], r->sign);
+        iso_vec2 meet;
+        if (is_opening(r, &in, &out)) {
+            ISO_TRY(put_opening(r, point[i], &in, &out, dot(in.along, out.along)));
+        } else if (cross2(in.along, out.along) * r->sign > -1e-9) { /* straight on */
+            ISO_TRY(put(r, point[i], out.shift, r->distance));
+        } else {
+            int32_t last = find_cut(&meet, &in, r, point, count, i);
+            if (last >= 0) {
+                ISO_TRY(put(r, (iso_point){0, 0}, meet, 1));
+                i = last;
+                continue;
+            }
+            ISO_TRY(put(r, point[i], in.shift, r->distance));
+            ISO_TRY(put(r, point[i], out.shift, r->distance));
+        }
         in = out;
     }
     return ISO_OK;
@@ -199,15 +254,9 @@ static iso_status check_range(iso_region *out, int32_t distance) {
     return ISO_OK;
 }
 
-iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_options *options,
-                      iso_planar_scratch *scratch) {
-    iso_region_clear(out);
+static iso_status offset_once(iso_region *out, const iso_region *in,
+                              const iso_offset_options *options, iso_planar_scratch *scratch) {
     scratch->edges.count = 0;
-    if ((unsigned)options->join > ISO_JOIN_SQUARE || options->arc_tolerance < 1 ||
-        !(options->mitre_limit >= 1))
-        return iso_fail(ISO_USAGE,
-                        "an offset needs a join, an arc tolerance of at least 1 unit and "
-                        "a mitre limit of at least 1");
     if (options->distance == 0) {
         ISO_TRY(edges_add(&scratch->edges, in, 0));
     } else {
@@ -216,4 +265,67 @@ iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_op
     }
     ISO_TRY(planar_resolve(&(iso_choice){out, is_inside, NULL}, 1, scratch));
     return check_range(out, options->distance);
+}
+
+/* Up to this many mean edges an offset goes in one step. The copies of n short edges that all turn
+ * over cross each other n^2 times; in steps that double, the short edges are gone before the long
+ * steps come. */
+enum { STEP_EDGES = 32, STEPS_MAX = 8, STEP_POINTS = 64 };
+
+static double mean_edge(const iso_region *region) {
+    double sum = 0;
+    int32_t count = region->first[region->count];
+    for (int32_t c = 0; c < region->count; c++) {
+        int32_t first = region->first[c], end = region->first[c + 1];
+        for (int32_t i = first; i < end; i++) {
+            iso_point a = region->point[i], b = region->point[i + 1 == end ? first : i + 1];
+            double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
+            sum += sqrt(dx * dx + dy * dy);
+        }
+    }
+    return sum / count;
+}
+
+/* How many doubling steps: 1 + 2 + ... + 2^(n - 1) first steps make the distance. */
+static int count_steps(const iso_region *in, double distance) {
+    if (in->count == 0 || in->first[in->count] < STEP_POINTS)
+        return 1;
+    double step = STEP_EDGES * mean_edge(in), reach = step;
+    int steps = 1;
+    for (; steps < STEPS_MAX && reach < distance; steps++)
+        reach += step *= 2;
+    return steps;
+}
+
+/* Offsets by parts of a distance add up to that by all of it. */
+static iso_status offset_in_steps(iso_region *out, const iso_region *in,
+                                  const iso_offset_options *options, int steps,
+                                  iso_planar_scratch *scratch) {
+    iso_offset_options part = *options;
+    int64_t done = 0, shares = ((int64_t)1 << steps) - 1;
+    part.arc_tolerance = options->arc_tolerance / steps > 1 ? options->arc_tolerance / steps : 1;
+    for (int k = 0; k < steps; k++) {
+        int64_t reach = (int64_t)options->distance * (((int64_t)2 << k) - 1) / shares;
+        part.distance = (int32_t)(reach - done);
+        done = reach;
+        ISO_TRY(offset_once(out, k == 0 ? in : out, &part, scratch));
+    }
+    return ISO_OK;
+}
+
+iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_options *options,
+                      iso_planar_scratch *scratch) {
+    if ((unsigned)options->join > ISO_JOIN_SQUARE || options->arc_tolerance < 1 ||
+        !(options->mitre_limit >= 1)) {
+        iso_region_clear(out);
+        return iso_fail(ISO_USAGE,
+                        "an offset needs a join, an arc tolerance of at least 1 unit and "
+                        "a mitre limit of at least 1");
+    }
+    int steps = count_steps(in, fabs((double)options->distance));
+    iso_status status = steps == 1 ? offset_once(out, in, options, scratch)
+                                   : offset_in_steps(out, in, options, steps, scratch);
+    if (status != ISO_OK)
+        iso_region_clear(out);
+    return status;
 }
