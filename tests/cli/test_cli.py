@@ -193,7 +193,8 @@ class Cli(unittest.TestCase):
         self.fails(2, "--no-cooling: takes no value", "part.stl", "--no-cooling=1")
         self.fails(2, "there is no flag --no-layer-height", "part.stl", "--no-layer-height")
         self.fails(2, "can't hold both", "part.stl", "-o", "x", "--report", "x")
-        self.fails(2, "more than one file", "contours", "part.stl", "part.stl")
+        self.fails(2, "more than one file", "preview", "part.gcode", "part.gcode")
+        self.fails(2, "no model given", "contours", "-o", "part.svg")
         self.fails(2, ".mlk, .json or .svg", "contours", "part.stl", "-o", "part.png")
         self.fails(2, "there is no flag --perimeters", "info", "part.stl", "--perimeters", "2")
         self.fails(2, "a list of layers", "preview", "part.stl", "--layers", "1;2")
@@ -288,6 +289,39 @@ class Cli(unittest.TestCase):
         self.run_it("contours", "part.stl", "-o", "part.svg")
         drawing = xml.dom.minidom.parse(str(self.at / "part.svg"))
         self.assertEqual(33, len(drawing.getElementsByTagName("path")))
+
+    def test_contours_lie_where_the_print_has_them(self):
+        write_stl(self.at / "more.stl", box((40, 0, 5), (50, 10, 10)))
+        self.run_it("contours", "more.stl", "part.stl", "-o", "both.json", "--center", "60,70")
+        levels = json.loads((self.at / "both.json").read_text())["levels"]
+        self.assertEqual(33, len(levels))
+        self.assertEqual({1, 2}, {len(level["contours"]) for level in levels})
+        xs, ys = ([p[axis] for ring in levels[-1]["contours"] for p in ring] for axis in (0, 1))
+        self.assertEqual((35, 85), (min(xs), max(xs)))
+        self.assertEqual((62.5, 77.5), (min(ys), max(ys)))
+        self.run_it("more.stl", "part.stl", "-o", "both.gcode", "--center", "60,70", "--skirts", "0")
+        text = (self.at / "both.gcode").read_text()
+        middle = text[text.index(";TYPE:External"):text.index("\nM104 S0")]
+        xs = [float(x) for x in re.findall(r"^G1 X(\S+) Y\S+ E", middle, re.M)]
+        self.assertGreater(min(xs), 35)
+        self.assertLess(min(xs), 36)
+        self.assertLess(max(xs), 85)
+        self.assertGreater(max(xs), 84)
+
+    def test_the_picture_of_contours_fills_what_is_material(self):
+        write_stl(self.at / "tube.stl", box((0, 0, 0), (20, 20, 2)) +
+                  [triangle[::-1] for triangle in box((5, 5, 0.1), (15, 15, 1.9))])
+        self.run_it("contours", "tube.stl", "part.stl", "-o", "part.svg")
+        drawing = xml.dom.minidom.parse(str(self.at / "part.svg"))
+        layers = [g for g in drawing.getElementsByTagName("g") if g.getAttribute("id")]
+        self.assertEqual(["layer%d" % (i + 1) for i in range(33)],
+                         [g.getAttribute("id") for g in layers])
+        self.assertEqual("0.175", layers[0].getAttribute("data-z"))
+        self.assertEqual(33, len({g.getAttribute("transform") for g in layers}))
+        self.assertEqual(33, len({g.getAttribute("fill") for g in layers}))
+        paths = [g.getElementsByTagName("path")[0].getAttribute("d") for g in layers]
+        self.assertEqual((3, 1), (paths[0].count("Z"), paths[-1].count("Z")))
+        self.assertIn("fill-rule:nonzero", drawing.getElementsByTagName("style")[0].toxml())
 
     def test_info(self):
         text = self.run_it("info", "part.stl", "part.stl").stdout.decode()

@@ -80,6 +80,25 @@ static void test_translation_changes_nothing(void) {
     iso_mesh_free(&mesh);
 }
 
+static void test_models_are_placed_together(void) {
+    shape s[2] = {{0}, {0}};
+    iso_mesh mesh[2];
+    shape_box(&s[0], 0, 0, -7, 10, 20, 1);
+    shape_box(&s[1], 30, -5, -3, 50, 5, 4);
+    if (!made(&mesh[0], &s[0]) || !made(&mesh[1], &s[1]))
+        return;
+    iso_meshes_place(mesh, 2, (iso_vec2){100, 60});
+    CHECK_NEAR(75, mesh[0].min.x, 0);
+    CHECK_NEAR(125, mesh[1].max.x, 0);
+    CHECK_NEAR(47.5, mesh[1].min.y, 0);
+    CHECK_NEAR(72.5, mesh[0].max.y, 0);
+    CHECK_NEAR(0, mesh[0].min.z, 0);
+    CHECK_NEAR(4, mesh[1].min.z, 0);
+    iso_mesh_free(&mesh[0]);
+    iso_mesh_free(&mesh[1]);
+    iso_meshes_place(mesh, 0, (iso_vec2){0, 0});
+}
+
 static void test_clipping_is_exact_at_corners(void) {
     uint64_t state = 3;
     for (int round = 0; round < 30; round++) {
@@ -105,6 +124,7 @@ int main(void) {
     RUN(test_tetrahedron);
     RUN(test_sphere);
     RUN(test_translation_changes_nothing);
+    RUN(test_models_are_placed_together);
     RUN(test_clipping_is_exact_at_corners);
     return check_verdict();
 }

@@ -398,6 +398,48 @@ static void test_allocation_failures(void) {
     shape_free(&s);
 }
 
+/* A box and a taller one, joined: areas add up level by level. */
+static void test_joined_models(void) {
+    shape box[2] = {{0}, {0}};
+    iso_mesh mesh[2];
+    iso_levels levels;
+    iso_slices each[2], all;
+    shape_box(&box[0], 0, 0, 0, 2, 3, 4);
+    shape_box(&box[1], 1, 1, 0, 6, 5, 9);
+    for (int i = 0; i < 2; i++)
+        CHECK_OK(iso_mesh_from_triangles(&mesh[i], box[i].triangle, box[i].count));
+    CHECK_OK(iso_levels_uniform(&levels, 9, 0.5, 0.5));
+    for (int i = 0; i < 2; i++)
+        CHECK_OK(iso_slice_planar(&each[i], &mesh[i], &levels));
+    CHECK_OK(iso_slices_join(&all, each, 2));
+    CHECK_OK(iso_slices_validate(&all));
+    CHECK_EQUAL(18, all.level_count);
+    CHECK_EQUAL(8 + 18, all.contour_count);
+    for (int32_t l = 0; l < 18; l++) {
+        CHECK_NEAR(l < 8 ? 26 : 20, level_area(&all, l), 1e-12);
+        CHECK_NEAR(l < 8 ? 6 : 20, contour_area(&all, all.level_first[l]), 1e-12);
+    }
+    iso_slices_free(&all);
+    for (int64_t n = 0; n < 3; n++) {
+        iso_fail_allocation_after(n);
+        CHECK_STATUS(ISO_NO_MEMORY, iso_slices_join(&all, each, 2));
+        iso_fail_allocation_after(-1);
+        CHECK(all.point == NULL && all.level_first == NULL);
+    }
+    each[1].level_count--;
+    CHECK_STATUS(ISO_USAGE, iso_slices_join(&all, each, 2));
+    each[1].level_count++;
+    CHECK_OK(iso_slices_join(&all, NULL, 0));
+    CHECK_OK(iso_slices_validate(&all));
+    iso_slices_free(&all);
+    iso_levels_free(&levels);
+    for (int i = 0; i < 2; i++) {
+        iso_slices_free(&each[i]);
+        iso_mesh_free(&mesh[i]);
+        shape_free(&box[i]);
+    }
+}
+
 int main(void) {
     RUN(test_cube);
     RUN(test_tetrahedron);
@@ -410,6 +452,7 @@ int main(void) {
     RUN(test_canonical_order);
     RUN(test_no_levels);
     RUN(test_mended_soups);
+    RUN(test_joined_models);
     RUN(test_allocation_failures);
     return check_verdict();
 }

@@ -63,6 +63,10 @@ ISO_API void iso_mesh_free(iso_mesh *mesh);
 /* Move every vertex, and the box with them. */
 ISO_API void iso_mesh_translate(iso_mesh *mesh, iso_vec3 offset);
 
+/* Move meshes together, so that the middle of their common box comes to lie at `center` and its
+ * floor at z = 0. */
+ISO_API void iso_meshes_place(iso_mesh *mesh, int32_t count, iso_vec2 center);
+
 /* Signed volume in mm^3, by the divergence theorem; exact up to rounding on a closed mesh. */
 ISO_API double iso_mesh_volume(const iso_mesh *mesh);
 

@@ -46,6 +46,10 @@ typedef struct iso_slices {
 /* Cut by planes z = levels->cut[i]. The slices own their arrays. */
 ISO_API iso_status iso_slice_planar(iso_slices *slices, const iso_mesh *mesh,
                                     const iso_levels *levels) ISO_MUST_CHECK;
+/* Several models cut at the same levels as one: level by level the contours of the first, then
+ * those of the next. Of coinciding material it has both outlines. `joined` owns its arrays. */
+ISO_API iso_status iso_slices_join(iso_slices *joined, const iso_slices *slices,
+                                   int32_t count) ISO_MUST_CHECK;
 ISO_API void iso_slices_free(iso_slices *slices);
 ISO_API iso_status iso_slices_validate(const iso_slices *slices) ISO_MUST_CHECK;
 

@@ -1,5 +1,7 @@
 #include <isoslice/mesh.h>
 
+#include <math.h>
+
 #include "base/memory.h"
 
 void iso_mesh_free(iso_mesh *mesh) {
@@ -18,6 +20,20 @@ void iso_mesh_translate(iso_mesh *mesh, iso_vec3 offset) {
         mesh->position[v] = moved(mesh->position[v], offset);
     mesh->min = moved(mesh->min, offset);
     mesh->max = moved(mesh->max, offset);
+}
+
+void iso_meshes_place(iso_mesh *mesh, int32_t count, iso_vec2 center) {
+    if (count <= 0)
+        return;
+    iso_vec3 min = mesh[0].min, max = mesh[0].max;
+    for (int32_t i = 1; i < count; i++) {
+        iso_vec3 low = mesh[i].min, high = mesh[i].max;
+        min = (iso_vec3){fmin(min.x, low.x), fmin(min.y, low.y), fmin(min.z, low.z)};
+        max = (iso_vec3){fmax(max.x, high.x), fmax(max.y, high.y), fmax(max.z, high.z)};
+    }
+    iso_vec3 by = {center.x - (min.x + max.x) / 2, center.y - (min.y + max.y) / 2, -min.z};
+    for (int32_t i = 0; i < count; i++)
+        iso_mesh_translate(&mesh[i], by);
 }
 
 static int finite_point(iso_vec3 p) {
