@@ -362,7 +362,7 @@ static void test_heights_centre_and_overlap(void) {
     CHECK_EQUAL(2, iso_options_heights(height, &options));
     CHECK_NEAR(0.35, height[0], 0);
     CHECK_NEAR(0.3, height[1], 0);
-    CHECK_NEAR(0.1125, iso_options_infill_overlap(&options), 1e-12);
+    CHECK_NEAR(0.1125, iso_options_infill_overlap(&options, false, 0.3), 1e-12);
     CHECK_NEAR(100, iso_options_center(&options).x, 0);
     CHECK_OK(iso_options_set(&options, "first_layer_height", "50%", "test"));
     CHECK_NEAR(0.15, iso_options_first_height(&options), 1e-12);

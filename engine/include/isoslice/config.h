@@ -157,7 +157,8 @@ ISO_API double iso_options_width(const iso_options *options, iso_role role, bool
                                  double layer_height);
 ISO_API double iso_options_speed(const iso_options *options, iso_role role, bool small_perimeter,
                                  bool first_layer);
-ISO_API double iso_options_infill_overlap(const iso_options *options);
+ISO_API double iso_options_infill_overlap(const iso_options *options, bool first_layer,
+                                          double layer_height);
 /* Where the print's middle comes to lie: `center`, or the middle of the bed's box. */
 ISO_API iso_vec2 iso_options_center(const iso_options *options);
 

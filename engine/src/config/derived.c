@@ -86,8 +86,9 @@ double iso_options_speed(const iso_options *options, iso_role role, bool small_p
     return first_layer ? iso_relative_of(options->first_layer_speed, speed) : speed;
 }
 
-double iso_options_infill_overlap(const iso_options *options) {
-    double width = iso_options_width(options, ISO_ROLE_PERIMETER, false, options->layer_height);
+double iso_options_infill_overlap(const iso_options *options, bool first_layer,
+                                  double layer_height) {
+    double width = iso_options_width(options, ISO_ROLE_PERIMETER, first_layer, layer_height);
     return iso_relative_of(options->infill_overlap, width);
 }
 

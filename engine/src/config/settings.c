@@ -41,6 +41,17 @@ static iso_fill_options fill_of(const iso_options *options, iso_role role, bool 
     return fill;
 }
 
+/* Without walls there is nothing to bond with; and no fill reaches through the innermost of them.
+ */
+static int32_t overlap_of(const iso_layer_settings *s, const iso_options *options, bool first,
+                          double height) {
+    const iso_bead *innermost = s->wall.count == 1 ? &s->wall.external : &s->wall.inner;
+    int32_t overlap = iso_units(iso_options_infill_overlap(options, first, height));
+    if (s->wall.count == 0)
+        return 0;
+    return overlap < innermost->spacing ? overlap : innermost->spacing;
+}
+
 /* Layers take turns of 90 degrees. At full density lines are fitted to each part; sparse ones keep
  * their place from layer to layer. A grid is two passes of half the density, both on every layer.
  */
@@ -61,8 +72,7 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
         s->sparse[pass].like.rank += pass;
     }
     s->fill_inset = solid.spacing / 2;
-    if (options->perimeters > 0) /* without walls there is nothing to bond with */
-        s->wall.fill_inset = -iso_units(iso_options_infill_overlap(options));
+    s->wall.fill_inset = -overlap_of(s, options, first, height);
     s->shell = (iso_shell_options){.narrowest = full ? 2 * solid.spacing : solid.spacing,
                                    .anchor = full ? 0 : 2 * solid.spacing};
 }

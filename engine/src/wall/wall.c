@@ -14,7 +14,7 @@ static iso_status inset(iso_region *out, const iso_region *in, int32_t distance,
     return iso_offset(out, in, &offset, scratch);
 }
 
-static bool is_small(const iso_point *point, int32_t count, int32_t limit) {
+static bool is_shorter(const iso_point *point, int32_t count, int32_t limit) {
     double length = 0;
     for (int32_t i = 0; i < count && length <= limit; i++) {
         iso_point a = point[i], b = point[i + 1 == count ? 0 : i + 1];
@@ -34,7 +34,9 @@ static iso_status add_loops(iso_paths *paths, const iso_region *loops, int32_t w
     for (int32_t c = 0; c < loops->count; c++) {
         const iso_point *point = loops->point + loops->first[c];
         int32_t count = loops->first[c + 1] - loops->first[c];
-        like.speed_class = is_small(point, count, options->small_length);
+        if (is_shorter(point, count, bead->width))
+            continue; /* a dot */
+        like.speed_class = is_shorter(point, count, options->small_length);
         ISO_TRY(iso_paths_add(paths, &like, point, count, bead->width, bead->area));
     }
     return ISO_OK;
