@@ -123,6 +123,28 @@ static void test_no_overlap_without_walls(void) {
     print_free(&p);
 }
 
+/* The overlap is that of the layer's own beads: narrow first layers aren't left by the fill of wide
+ * ones. */
+static void test_overlap_of_narrow_first_layer(void) {
+    print p;
+    double box[4], h = 0.3, w = 0.36, s = spacing_of(w, h);
+    print_cube(&p, "nozzle_diameter = 0.8\nperimeters = 1\nperimeter_extrusion_width = 1.6\n"
+                   "first_layer_height = 0.3\nfirst_layer_extrusion_width = 120%");
+    CHECK(print_box(box, &p, ISO_ROLE_SOLID_INFILL, 0));
+    double half = side / 2 - w / 2 - s / 2 + 0.25 * w - s / 2;
+    for (int k = 0; k < 4; k++)
+        CHECK_NEAR(100 + (k < 2 ? -1 : 1) * half, box[k], 0.02);
+    print_free(&p);
+    print_cube(&p, "perimeters = 1\ninfill_overlap = 3"); /* no further than through the wall */
+    for (int32_t i = 0; i < p.level_count; i++) {
+        double width = i ? 0.45 : 0.7, height = p.level[i].height;
+        s = spacing_of(width, height);
+        CHECK(print_box(box, &p, -1, i));
+        CHECK(box[0] > 90 + s / 2 - 0.01 && box[2] < 110 - s / 2 + 0.01);
+    }
+    print_free(&p);
+}
+
 /* Distances of skirts to a convex part are those of the loops' middles. */
 static void test_skirt(void) {
     print p;
@@ -168,6 +190,7 @@ int main(void) {
     RUN(test_shells);
     RUN(test_density);
     RUN(test_no_overlap_without_walls);
+    RUN(test_overlap_of_narrow_first_layer);
     RUN(test_skirt);
     RUN(test_cavity_is_closed);
     CHECK(print_folder_remove());

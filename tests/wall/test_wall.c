@@ -321,6 +321,27 @@ static void test_narrow_parts(void) {
     }
 }
 
+/* The second wall of a square that is hardly wide enough for it is a dot, and not drawn. */
+static void test_dots_are_left_out(void) {
+    static const struct {
+        double side;
+        int32_t walls;
+    } box[] = {{1.205, 1}, {1.3, 1}, {1.35, 2}, {1.6, 2}};
+    for (int i = 0; i < 4; i++) {
+        iso_region region = {0}, inside = {0};
+        iso_paths paths = {0};
+        iso_wall_options options = usual(2);
+        add_box(&region, 0, 0, box[i].side, box[i].side, 0);
+        CHECK_OK(iso_walls(&paths, &inside, &region, &options, scratch));
+        CHECK_EQUAL(box[i].walls, paths.count);
+        for (int32_t k = 0; k < paths.count; k++)
+            CHECK(length_of(&paths, &paths.path[k]) > paths.vertex[paths.path[k].first].width);
+        iso_region_free(&region);
+        iso_region_free(&inside);
+        iso_paths_free(&paths);
+    }
+}
+
 /* A dumb-bell falls in two where the bar is too narrow. */
 static void test_parts_come_apart(void) {
     iso_region region = {0}, inside = {0};
@@ -417,6 +438,7 @@ int main(void) {
     RUN(test_ranks);
     RUN(test_small_perimeters);
     RUN(test_narrow_parts);
+    RUN(test_dots_are_left_out);
     RUN(test_parts_come_apart);
     RUN(test_fill_inset);
     RUN(test_appends);
