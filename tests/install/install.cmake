@@ -11,6 +11,7 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/build -D CMAKE_C_COMPILER=${COMPILER}
     -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release -D VERSION=${VERSION})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
-run(${SCRATCH}/build/consumer)
+run(${SAMPLE} ${SCRATCH}/part.stl)
+run(${SCRATCH}/build/consumer ${SCRATCH}/part.stl ${SCRATCH}/part.gcode)
 run(${prefix}/bin/isoslice --version)
 file(REMOVE_RECURSE ${SCRATCH})

@@ -3,17 +3,20 @@
 #define ISOSLICE_ISOSLICE_H
 
 #include <isoslice/config.h>
-#include <isoslice/gcode.h>
 #include <isoslice/fill.h>
+#include <isoslice/gcode.h>
 #include <isoslice/geometry.h>
+#include <isoslice/job.h>
 #include <isoslice/link.h>
 #include <isoslice/mesh.h>
 #include <isoslice/path.h>
 #include <isoslice/planar.h>
 #include <isoslice/preview.h>
 #include <isoslice/report.h>
+#include <isoslice/shell.h>
 #include <isoslice/slice.h>
 #include <isoslice/status.h>
 #include <isoslice/version.h>
+#include <isoslice/wall.h>
 
 #endif

@@ -5,8 +5,11 @@
 #ifndef ISOSLICE_STATUS_H
 #define ISOSLICE_STATUS_H
 
+/* In front of every public function: it has C's linkage in C++ too. */
 #if defined(ISO_BUILDING_LIBRARY) && defined(__GNUC__)
 #define ISO_API __attribute__((visibility("default")))
+#elif defined(__cplusplus)
+#define ISO_API extern "C"
 #else
 #define ISO_API
 #endif
