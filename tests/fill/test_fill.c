@@ -437,6 +437,13 @@ static void test_refusals(void) {
     CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
     int count = paths.count, vertices = paths.vertex_count;
     CHECK(count > 0);
+    iso_paths_clear(&paths);
+    CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, NULL)); /* with scratch of its own */
+    CHECK_EQUAL(count, paths.count);
+    CHECK_EQUAL(vertices, paths.vertex_count);
+    iso_filling_link link;
+    CHECK_OK(iso_fill_to_link(&link, &region, &options, NULL));
+    iso_multilink_free(&link.link);
     static const double spacings[] = {0, -1, 99, NAN, INFINITY, 1e9};
     for (int i = 0; i < 6; i++) {
         options.spacing = spacings[i];

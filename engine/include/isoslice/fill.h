@@ -13,7 +13,7 @@
 #include <isoslice/planar.h>
 #include <isoslice/status.h>
 
-struct iso_arena; /* scratch memory, base/memory.h */
+struct iso_arena; /* the engine's scratch memory; NULL: the call has its own */
 
 typedef struct iso_fill_options {
     double spacing; /* units between neighbouring lines, >= ISO_FILL_SPACING_MIN; kept to 1/256 */

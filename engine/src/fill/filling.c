@@ -36,6 +36,8 @@ iso_status iso_fill_to_link(iso_filling_link *out, const iso_region *region,
                             const iso_fill_options *options, iso_arena *scratch) {
     *out = (iso_filling_link){0};
     ISO_TRY(iso_fill_options_validate(options));
+    iso_arena own = {0};
+    scratch = scratch ? scratch : &own;
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     iso_hatch hatch;
     iso_status status = hatch_all(&hatch, region, options, scratch);
@@ -43,5 +45,6 @@ iso_status iso_fill_to_link(iso_filling_link *out, const iso_region *region,
         status = iso_filling_link_new(out, hatch.link.count, hatch.link.arc, hatch.link.line,
                                       hatch.link.contour);
     iso_arena_pop(scratch, mark);
+    iso_arena_free(&own);
     return status;
 }

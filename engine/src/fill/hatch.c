@@ -2,11 +2,6 @@
 
 #include <math.h>
 
-static double distance(iso_point a, iso_point b) {
-    double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
-    return sqrt(dx * dx + dy * dy);
-}
-
 /* The length of contour within a few units, what rounding makes of an edge, of an end of v. */
 static void find_flats(iso_extent *extent, const iso_fill_part *part, const iso_sweep *sweep,
                        double flat) {
@@ -20,9 +15,9 @@ static void find_flats(iso_extent *extent, const iso_fill_part *part, const iso_
     for (int32_t i = from; i < to; last = i++) {
         int64_t v = iso_sweep_v(sweep, point[i]);
         if (v <= near_low && before <= near_low)
-            low += distance(point[last], point[i]);
+            low += iso_hatch_distance(point[last], point[i]);
         if (v >= near_high && before >= near_high)
-            high += distance(point[last], point[i]);
+            high += iso_hatch_distance(point[last], point[i]);
         before = v;
     }
     extent->low_flat = low > flat;
@@ -206,7 +201,7 @@ iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const is
 int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart, double longest) {
     int32_t c = dart >> 1, d = hatch->link.arc[dart] >> 1;
     iso_point here = hatch->crossing[c].at, end = hatch->crossing[d].at;
-    if (distance(here, end) > longest)
+    if (iso_hatch_distance(here, end) > longest)
         return -1;
     const iso_region *region = hatch->part.region;
     int32_t contour = hatch->part.member[hatch->link.contour[c]];
@@ -217,11 +212,11 @@ int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart,
     while (i != last) { /* edge i begins at point i, so backward its own point comes first */
         int32_t next = forward ? (i + 1 < to ? i + 1 : from) : (i > from ? i : to) - 1;
         iso_point passed = region->point[forward ? next : i];
-        length += distance(here, passed);
+        length += iso_hatch_distance(here, passed);
         if (length > longest)
             return -1;
         here = point[count++] = passed;
         i = next;
     }
-    return length + distance(here, end) > longest ? -1 : count;
+    return length + iso_hatch_distance(here, end) > longest ? -1 : count;
 }

@@ -3,6 +3,8 @@
 #ifndef ISO_FILL_HATCH_H
 #define ISO_FILL_HATCH_H
 
+#include <math.h>
+
 #include <isoslice/planar.h>
 
 #include "base/memory.h"
@@ -22,6 +24,11 @@ typedef struct iso_hatch {
     iso_crossing *crossing;
     iso_fill_part part;
 } iso_hatch;
+
+static inline double iso_hatch_distance(iso_point a, iso_point b) {
+    double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
+    return sqrt(dx * dx + dy * dy);
+}
 
 /* Of the part's outer contour. An end counts as flat if an edge longer than `flat` units lies
  * along it; 0 doesn't look. */

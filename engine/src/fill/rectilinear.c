@@ -14,11 +14,6 @@ typedef struct zigzag {
     int32_t count;
 } zigzag;
 
-static double distance(iso_point a, iso_point b) {
-    double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
-    return sqrt(dx * dx + dy * dy);
-}
-
 static void draw_to(zigzag *run, iso_point to) {
     iso_point last = run->count ? run->point[run->count - 1] : (iso_point){0};
     if (!run->count || last.x != to.x || last.y != to.y)
@@ -29,7 +24,7 @@ static void draw_to(zigzag *run, iso_point to) {
  * hide beyond the ends for longer than the link itself.) */
 static int is_straight(iso_point a, iso_point b, const iso_point *point, int32_t count,
                        double deviation) {
-    double dx = (double)b.x - a.x, dy = (double)b.y - a.y, length = distance(a, b);
+    double dx = (double)b.x - a.x, dy = (double)b.y - a.y, length = iso_hatch_distance(a, b);
     for (int32_t i = 0; i < count; i++) {
         double px = (double)point[i].x - a.x, py = (double)point[i].y - a.y;
         double off = dx * py - dy * px, along = dx * px + dy * py;
@@ -101,7 +96,7 @@ static void turn_round(zigzag *run) {
 static int is_short(const zigzag *run) {
     double length = 0;
     for (int32_t i = 1; i < run->count && length <= run->options->shortest; i++)
-        length += distance(run->point[i - 1], run->point[i]);
+        length += iso_hatch_distance(run->point[i - 1], run->point[i]);
     return run->count < 2 || length <= run->options->shortest;
 }
 
@@ -117,7 +112,9 @@ static iso_status draw_part(iso_paths *out, zigzag *run, int32_t width, int32_t 
             continue;
         int32_t left = 4 * s + 1, right = 4 * s + 3; /* darts that go on upward */
         int32_t start =
-            distance(at, place(run, right)) < distance(at, place(run, left)) ? right : left;
+            iso_hatch_distance(at, place(run, right)) < iso_hatch_distance(at, place(run, left))
+                ? right
+                : left;
         run->count = 0;
         draw_on(run, start);
         at = run->point[run->count - 1];
@@ -241,10 +238,13 @@ iso_status iso_fill_rectilinear(iso_paths *out, const iso_region *region,
     ISO_TRY(iso_fill_options_validate(options));
     if (region->count == 0)
         return ISO_OK;
+    iso_arena own = {0};
+    scratch = scratch ? scratch : &own;
     int32_t count = out->count, vertex_count = out->vertex_count;
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     iso_status status = fill_region(out, region, options, scratch);
     iso_arena_pop(scratch, mark);
+    iso_arena_free(&own);
     if (status != ISO_OK) {
         out->count = count;
         out->vertex_count = vertex_count;
