@@ -62,18 +62,11 @@ typedef struct walk {
     char name[64];   /* of the argument, without a value */
 } walk;
 
-static bool same_name(const char *known, const char *given) {
-    for (; *known; known++, given++)
-        if (*known != (*given == '-' ? '_' : *given))
-            return false;
-    return *given == 0;
-}
-
 static int find_flag(const char *name) {
-    if (same_name("load", name))
+    if (iso_same_key("load", name))
         return FLAG_config;
     for (int i = 0; i < FLAG_COUNT; i++)
-        if (same_name(flag_table[i].name, name))
+        if (iso_same_key(flag_table[i].name, name))
             return i;
     return -1;
 }

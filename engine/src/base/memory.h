@@ -20,8 +20,8 @@ iso_status iso_no_memory(size_t size);
  * Returns how many allocations were made since the last call. Not thread-safe. */
 int64_t iso_fail_allocation_after(int64_t n);
 
-/* Grow *block to hold at least `needed` elements of `size` bytes, doubling; *capacity counts
- * elements. */
+/* Grow *block to hold at least `needed` elements of `size` bytes, by a half or more; *capacity
+ * counts elements. */
 iso_status iso_grow(void **block, int64_t *capacity, int64_t needed, size_t size) ISO_MUST_CHECK;
 
 #define ISO_GROW(array, capacity, needed)                                                          \

@@ -34,16 +34,9 @@ const char *iso_option_word(int32_t option, int32_t i) {
     return iso_value_word(option_table[option].kind, i);
 }
 
-static bool same_key(const char *known, const char *given) {
-    for (; *known; known++, given++)
-        if (*known != (*given == '-' ? '_' : *given))
-            return false;
-    return *given == 0;
-}
-
 int32_t iso_option_find(const char *key) {
     for (int32_t i = 0; i < OPTION_COUNT; i++)
-        if (same_key(option_table[i].key, key))
+        if (iso_same_key(option_table[i].key, key))
             return i;
     return -1;
 }

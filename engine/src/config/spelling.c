@@ -10,6 +10,13 @@ static char letter(char c) {
     return c == '-' ? '_' : c;
 }
 
+bool iso_same_key(const char *known, const char *given) {
+    for (; *known; known++, given++)
+        if (*known != letter(*given))
+            return false;
+    return *given == 0;
+}
+
 int iso_edit_distance(const char *known, const char *given) {
     int row[ISO_SPELLING_MAX + 1];
     int n = (int)strlen(given);
