@@ -244,6 +244,44 @@ static void a_circle(void) {
     iso_region_free(&circle);
 }
 
+/* A closing corner too sharp to be cut alone, and behind it an edge that runs through the circle
+ * which touches the edges next to both: no fillet. The shrunk quadrilateral is the one between its
+ * four lines. */
+static void a_long_edge_is_no_fillet(void) {
+    static const iso_point corner[] = {
+        {-10000, -10000}, {-20000, -80000}, {10000, -80000}, {70000, 50000}};
+    iso_region kite = {0}, out = {0};
+    must_add(&kite, corner, 4);
+    for (int join = ISO_JOIN_ROUND; join <= ISO_JOIN_SQUARE; join++) {
+        iso_offset_options options = iso_offset_defaults(-15615);
+        options.join = (iso_join)join;
+        CHECK_OK(iso_offset(&out, &kite, &options, scratch));
+        CHECK_EQUAL(-1, iso_region_locate(&out, (iso_point){-1073, -66730}));
+        CHECK_EQUAL(-1, iso_region_locate(&out, (iso_point){-2890, -70666}));
+        for (int32_t i = 0; i < (out.count ? out.first[out.count] : 0); i++)
+            for (int k = 0; k < 4; k++) {
+                iso_point a = corner[k], b = corner[(k + 1) % 4];
+                double dx = (double)b.x - a.x, dy = (double)b.y - a.y;
+                double left =
+                    dx * ((double)out.point[i].y - a.y) - dy * ((double)out.point[i].x - a.x);
+                CHECK(left / sqrt(dx * dx + dy * dy) >= 15615 - 2);
+            }
+    }
+    iso_region_free(&kite);
+    iso_region_free(&out);
+}
+
+/* Long round offsets go in steps, and shrinking undoes growing where nothing closes up. */
+static void a_long_round_offset_of_short_edges(void) {
+    iso_region circle = {0};
+    add_circle(&circle, 70, -3, 100000, 3000);
+    for (int32_t d = -90000; d <= 900000; d += 330000) {
+        double radius = 100000. + d, area = pi * radius * radius;
+        CHECK_NEAR(area, offset_area(&circle, d, ISO_JOIN_ROUND, NULL), 2 * pi * radius * 8);
+    }
+    iso_region_free(&circle);
+}
+
 /* Arcs almost as coarse as the distance: what a chord leaves out, no other winding may count in. */
 static void coarse_arcs(void) {
     static const struct coarse {
@@ -326,6 +364,8 @@ int main(void) {
     RUN(two_boxes_grow_together);
     RUN(the_mitre_limit);
     RUN(a_circle);
+    RUN(a_long_edge_is_no_fillet);
+    RUN(a_long_round_offset_of_short_edges);
     RUN(coarse_arcs);
     RUN(out_of_range);
     RUN(a_hole_at_the_end_of_the_range);

@@ -143,12 +143,13 @@ static bool copies_meet(iso_vec2 *meet, const iso_rawing *r, iso_point from, con
     return back >= 0 && ahead >= 0 && 2 * back <= in->length && 2 * ahead <= out->length;
 }
 
+/* Do the lines through the short edges pass the circle around `center`? Then the edges do. */
 static bool stays_outside(const iso_rawing *r, iso_vec2 center, const iso_point *point,
-                          int32_t count) {
-    double least = (r->distance - 0.5) * (r->distance - 0.5);
-    for (int32_t i = 0; i < count; i++) {
-        double dx = point[i].x - center.x, dy = point[i].y - center.y;
-        if (dx * dx + dy * dy < least)
+                          int32_t edges) {
+    for (int32_t i = 0; i < edges; i++) {
+        iso_side side = side_of(point[i], point[i + 1], r->sign);
+        iso_vec2 reach = {center.x - point[i].x, center.y - point[i].y};
+        if (dot(reach, side.shift) < r->distance - 0.5)
             return false;
     }
     return true;
@@ -164,7 +165,7 @@ static int32_t find_cut(iso_vec2 *meet, iso_side *in, const iso_rawing *r, const
         if (is_opening(r, &before, &out))
             return -1;
         if (copies_meet(meet, r, point[i], in, point[last], &out) &&
-            stays_outside(r, *meet, point + i, last - i + 1)) {
+            stays_outside(r, *meet, point + i, last - i)) {
             *in = out;
             return last;
         }
@@ -297,7 +298,7 @@ static int count_steps(const iso_region *in, double distance) {
     return steps;
 }
 
-/* Offsets by parts of a distance add up to that by all of it. */
+/* Round offsets by parts of a distance add up to that by all of it; mitres and squares don't. */
 static iso_status offset_in_steps(iso_region *out, const iso_region *in,
                                   const iso_offset_options *options, int steps,
                                   iso_planar_scratch *scratch) {
@@ -322,7 +323,8 @@ iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_op
                         "an offset needs a join, an arc tolerance of at least 1 unit and "
                         "a mitre limit of at least 1");
     }
-    int steps = count_steps(in, fabs((double)options->distance));
+    bool adds_up = options->join == ISO_JOIN_ROUND;
+    int steps = adds_up ? count_steps(in, fabs((double)options->distance)) : 1;
     iso_status status = steps == 1 ? offset_once(out, in, options, scratch)
                                    : offset_in_steps(out, in, options, steps, scratch);
     if (status != ISO_OK)
