@@ -271,7 +271,7 @@ static void a_long_edge_is_no_fillet(void) {
     iso_region_free(&out);
 }
 
-/* Long round offsets go in steps, and shrinking undoes growing where nothing closes up. */
+/* Long round offsets go in steps. */
 static void a_long_round_offset_of_short_edges(void) {
     iso_region circle = {0};
     add_circle(&circle, 70, -3, 100000, 3000);
