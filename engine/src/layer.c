@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include "planar/island.h"
+#include "planar/region.h"
 #include "planar/section.h"
 
 double iso_stage_clock(void) {
@@ -68,15 +69,38 @@ static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_slices
                                hand->planar);
 }
 
+/* Is the island within the contour? Points where they touch don't tell. */
+static bool is_within(const iso_region *island, const iso_region *contour) {
+    int side = 0;
+    for (int32_t i = 0; i < island->first[1] && side == 0; i++)
+        side = iso_region_locate(contour, island->point[i]);
+    return side > 0;
+}
+
+/* The innermost hole of the area so far that the island lies in, or -1. Islands come after those
+ * around them, so it is the last one. */
+static int32_t hole_around(const iso_region *area, const iso_region *island) {
+    for (int32_t c = area->count; c-- > 0;) {
+        int32_t first[2] = {0, area->first[c + 1] - area->first[c]};
+        iso_region contour = {.count = 1, .first = first, .point = area->point + area->first[c]};
+        if (contour_double_area(contour.point, first[1]) < 0 && is_within(island, &contour))
+            return c;
+    }
+    return -1;
+}
+
 /* Append an island's area to the layer's, and note whose it is. */
-static iso_status add_area(iso_layer *layer, const iso_region *inside, int32_t group) {
+static iso_status add_area(iso_layer *layer, const iso_region *inside, int32_t group, bool nested) {
     iso_region *area = &layer->area;
     int32_t base = area->count;
+    if (inside->count == 0)
+        return ISO_OK;
+    int32_t around = nested ? hole_around(area, inside) : -1;
     ISO_TRY(ISO_GROW(layer->group, layer->group_capacity, (int64_t)base + inside->count));
     for (int32_t c = 0; c < inside->count; c++) {
         ISO_TRY(iso_region_add(area, inside->point + inside->first[c],
                                inside->first[c + 1] - inside->first[c]));
-        area->parent[base + c] = inside->parent[c] < 0 ? -1 : base + inside->parent[c];
+        area->parent[base + c] = inside->parent[c] < 0 ? around : base + inside->parent[c];
         layer->group[base + c] = group;
     }
     return ISO_OK;
@@ -90,10 +114,10 @@ static iso_status make_walls(iso_layer *layer, iso_hand *hand) {
         wall.like.group = i;
         ISO_TRY(island_copy(&hand->island, &layer->region, &islands, i));
         ISO_TRY(iso_walls(&layer->paths, &hand->inside, &hand->island, &wall, hand->planar));
-        ISO_TRY(check(&hand->inside, hand));
-        ISO_TRY(add_area(layer, &hand->inside, i));
+        bool nested = layer->region.parent[islands.contour[islands.first[i]]] >= 0;
+        ISO_TRY(add_area(layer, &hand->inside, i, nested));
     }
-    return ISO_OK;
+    return check(&layer->area, hand);
 }
 
 iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *slices,

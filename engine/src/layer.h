@@ -32,7 +32,7 @@ typedef struct iso_layer {
     iso_region region; /* the outline */
     iso_region *run;   /* [levels] what it shares with the layers above, coarsely (shell.h) */
     int32_t levels;
-    iso_region area; /* within the walls; each island's is a region, with its parents within it */
+    iso_region area; /* within the walls, island by island */
     int32_t *group;  /* [area.count] island of `region` that each contour lies in */
     int64_t group_capacity;
     iso_paths paths;

@@ -236,6 +236,7 @@ static void check_regions(check *c, figures *f, bench_part *part) {
         for (int32_t k = 0; k < part->window.levels; k++)
             if (i < window_wide_end(k, part->levels.count))
                 check_region(c, f, part, &layer->run[k], "run of layers", i);
+        check_region(c, f, part, &layer->area, "area of the fill", i);
         part_fill(part, i);
         check_region(c, f, part, &shell->top, "top", i);
         check_region(c, f, part, &shell->solid, "solid", i);

@@ -55,6 +55,15 @@ static inline void solid_cavity(shape *s) {
     shape_turn(s, from, s->count);
 }
 
+/* A core that floats in a cavity: islands within holes of islands. */
+static inline void solid_nest(shape *s) {
+    shape_box(s, 0, 0, 0, 24, 24, 12);
+    int64_t from = s->count;
+    shape_box(s, 4, 4, 3, 20, 20, 9);
+    shape_turn(s, from, s->count);
+    shape_box(s, 8, 8, 5.15, 16, 16, 6.95);
+}
+
 static inline void solid_two(shape *s) {
     shape_box(s, 0, 0, 0, 8, 8, 5.03);
     shape_box(s, 14, 3, 0, 20, 13, 8);
@@ -95,7 +104,7 @@ static const solid_model all_solids[] = {
     {"cube", solid_cube, 1},       {"small", solid_small, 1},   {"torus", solid_torus, 1},
     {"sphere", solid_sphere, 1},   {"cavity", solid_cavity, 1}, {"two", solid_two, 1},
     {"plate", solid_plate, 1},     {"needle", solid_needle, 0}, {"vase", solid_vase, 1},
-    {"pyramid", solid_pyramid, 1},
+    {"pyramid", solid_pyramid, 1}, {"nest", solid_nest, 1},
 };
 
 enum { SOLID_COUNT = sizeof all_solids / sizeof *all_solids };
