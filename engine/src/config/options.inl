@@ -67,8 +67,10 @@ ISO_OPTION(solid_infill_speed, RELATIVE, "20", "mm/s", 0.1, 1000, "Speed",
            "Speed of solid infill; in % of infill_speed.")
 ISO_OPTION(top_solid_infill_speed, RELATIVE, "15", "mm/s", 0.1, 1000, "Speed",
            "Speed of the topmost solid layers; in % of solid_infill_speed.")
-ISO_OPTION(gap_fill_speed, NUMBER, "20", "mm/s", 0, 1000, "Speed", "Speed of gap fill.")
-ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0.1, 1000, "Speed", "Speed of bridges.")
+ISO_OPTION(gap_fill_speed, NUMBER, "20", "mm/s", 0, 1000, "Speed",
+           "Speed of gap fill, of which there is none yet.")
+ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0.1, 1000, "Speed",
+           "Speed of bridges, which are not told apart from other paths yet.")
 ISO_OPTION(first_layer_speed, RELATIVE, "30", "mm/s", 0.1, 1000, "Speed",
            "Speed of everything printed on the first layer; in % of the usual speed of each path.")
 ISO_OPTION(travel_speed, NUMBER, "130", "mm/s", 1, 1000, "Speed",
