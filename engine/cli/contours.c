@@ -141,6 +141,7 @@ iso_status iso_verb_contours(const iso_arguments *arguments) {
     if (strcmp(path, "-") != 0 && !ends_with(path, ".mlk") && !ends_with(path, ".json") &&
         !ends_with(path, ".svg"))
         return iso_fail(ISO_USAGE, "%s: contours are written as .mlk, .json or .svg", path);
+    ISO_TRY(iso_keep_files(arguments, path));
     ISO_TRY(warn(arguments));
     cut part;
     iso_status status = cut_new(&part, arguments->file_count);

@@ -2,6 +2,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/output.h"
 #include "verbs.h"
@@ -25,6 +26,18 @@ iso_status iso_replace_ending(char *out, size_t size, const char *file, const ch
     if (length + strlen(ending) >= size)
         return iso_fail(ISO_USAGE, "%.60s...: the name is too long", file);
     snprintf(out, size, "%.*s%s", (int)length, file, ending);
+    return ISO_OK;
+}
+
+iso_status iso_keep_files(const iso_arguments *arguments, const char *path) {
+    struct stat result, file;
+    if (!path || strcmp(path, "-") == 0 || stat(path, &result) != 0)
+        return ISO_OK;
+    for (int32_t i = 0; i < arguments->file_count; i++)
+        if (stat(arguments->file[i], &file) == 0 && file.st_dev == result.st_dev &&
+            file.st_ino == result.st_ino)
+            return iso_fail(ISO_USAGE,
+                            "%s: the result would take the place of what it is made from", path);
     return ISO_OK;
 }
 

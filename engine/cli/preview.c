@@ -11,6 +11,7 @@ iso_status iso_verb_preview(const iso_arguments *arguments) {
         ISO_TRY(iso_replace_ending(name, sizeof name, arguments->file[0], ".svg"));
         path = name;
     }
+    ISO_TRY(iso_keep_files(arguments, path));
     iso_preview_options options = iso_preview_defaults();
     options.layer = arguments->layer;
     options.layer_count = arguments->layer_count;

@@ -106,6 +106,8 @@ iso_status iso_verb_slice(const iso_arguments *arguments) {
     }
     if (arguments->report && strcmp(arguments->report, output) == 0)
         return iso_fail(ISO_USAGE, "%s: can't hold both the G-code and the report", output);
+    ISO_TRY(iso_keep_files(arguments, output));
+    ISO_TRY(iso_keep_files(arguments, arguments->report));
     iso_report report = {0};
     iso_status status = run_job(&report, arguments, output);
     status = finish(&report, arguments, status);

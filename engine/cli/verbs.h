@@ -18,6 +18,10 @@ iso_status iso_page_print(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_replace_ending(char *out, size_t size, const char *file,
                               const char *ending) ISO_MUST_CHECK;
 
+/* A result must not take the place of what it is made from: ISO_USAGE if `path` is one of the
+ * files. NULL and "-" are none. */
+iso_status iso_keep_files(const iso_arguments *arguments, const char *path) ISO_MUST_CHECK;
+
 /* One file, no more and no less. */
 iso_status iso_one_file(const iso_arguments *arguments) ISO_MUST_CHECK;
 

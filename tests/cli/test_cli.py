@@ -273,6 +273,16 @@ class Cli(unittest.TestCase):
 
     # --- the other verbs
 
+    def test_a_result_never_takes_the_place_of_a_model(self):
+        before = (self.at / "part.stl").read_bytes()
+        os.symlink("part.stl", self.at / "link.svg")
+        for arguments in (["part.stl", "-o", "part.stl"], ["part.stl", "-o", "./part.stl"],
+                          ["part.stl", "-o", "x.gcode", "--report", "part.stl"],
+                          ["contours", "part.stl", "-o", "link.svg"],
+                          ["preview", "link.svg"]):
+            self.fails(2, "take the place of what it is made from", *arguments)
+            self.assertEqual(before, (self.at / "part.stl").read_bytes())
+
     def test_contours(self):
         self.run_it("contours", "part.stl", "-o", "part.json", "--layer-heights", "0.3,0.2")
         levels = json.loads((self.at / "part.json").read_text())["levels"]
