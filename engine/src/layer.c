@@ -141,24 +141,10 @@ iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *sli
 
 /* ---- fill ---- */
 
-/* The group of the part of the area that holds the point; a group of its own if rounding has put
- * the point just outside of all. */
-static int32_t group_at(const iso_layer *layer, const iso_islands *areas, iso_hand *hand,
-                        iso_point point, int32_t otherwise, iso_status *status) {
-    for (int32_t i = 0; i < areas->count; i++) {
-        *status = island_copy(&hand->island, &layer->area, areas, i);
-        if (*status != ISO_OK)
-            return otherwise;
-        if (iso_region_locate(&hand->island, point) >= 0)
-            return layer->group[areas->contour[areas->first[i]]];
-    }
-    return otherwise;
-}
-
 typedef struct iso_filling {
     iso_layer *layer;
     iso_hand *hand;
-    const iso_islands *areas;
+    const iso_island_search *areas; /* NULL: parts are those of the area itself */
 } iso_filling;
 
 /* Inset each part of the region by half a spacing, for the middles of the lines, and fill it. */
@@ -177,6 +163,19 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
     return ISO_OK;
 }
 
+/* The group of a part: that of the area it lies in, or one of its own if rounding has put it just
+ * outside of all. */
+static int32_t group_of(const iso_filling *f, const iso_region *region, const iso_islands *parts,
+                        int32_t part) {
+    int32_t outer = parts->contour[parts->first[part]];
+    if (!f->areas)
+        return f->layer->group[outer];
+    const iso_islands *islands = f->areas->islands;
+    int32_t area = island_at(f->areas, region->point[region->first[outer]]);
+    return area < 0 ? f->layer->region.count + part
+                    : f->layer->group[islands->contour[islands->first[area]]];
+}
+
 static iso_status fill_region(const iso_filling *f, const iso_region *region,
                               const iso_fill_options *fill, int32_t count) {
     iso_hand *hand = f->hand;
@@ -185,15 +184,8 @@ static iso_status fill_region(const iso_filling *f, const iso_region *region,
         return ISO_OK;
     ISO_TRY(islands_of(&parts, region, &hand->arena));
     for (int32_t i = 0; i < parts.count; i++) {
-        int32_t outer = parts.contour[parts.first[i]];
-        iso_status status = ISO_OK;
-        int32_t group = region == &f->layer->area ? f->layer->group[outer]
-                                                  : group_at(f->layer, f->areas, hand,
-                                                             region->point[region->first[outer]],
-                                                             f->layer->region.count + i, &status);
-        ISO_TRY(status);
         ISO_TRY(island_copy(&hand->part, region, &parts, i));
-        ISO_TRY(fill_part(f, &hand->part, fill, count, group));
+        ISO_TRY(fill_part(f, &hand->part, fill, count, group_of(f, region, &parts, i)));
     }
     return ISO_OK;
 }
@@ -201,8 +193,10 @@ static iso_status fill_region(const iso_filling *f, const iso_region *region,
 static iso_status fill_shelled(iso_layer *layer, iso_hand *hand) {
     const iso_layer_settings *s = &layer->settings;
     iso_islands areas;
+    iso_island_search search;
     ISO_TRY(islands_of(&areas, &layer->area, &hand->arena));
-    iso_filling filling = {layer, hand, &areas};
+    ISO_TRY(island_search_new(&search, &layer->area, &areas, &hand->arena));
+    iso_filling filling = {layer, hand, &search};
     ISO_TRY(fill_region(&filling, &hand->shell.top, &s->top, 1));
     ISO_TRY(fill_region(&filling, &hand->shell.solid, &s->solid, 1));
     return fill_region(&filling, &hand->shell.sparse, s->sparse, s->sparse_count);

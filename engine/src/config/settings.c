@@ -7,6 +7,10 @@
 #define SMALL_RADIUS 6.5
 #define PI 3.14159265358979323846
 
+/* No finer arcs than 2 um from the true one, whatever gcode_resolution says: each wall would draw a
+ * hundred points around every point of the one before. */
+enum { FINEST_ARC = 20 };
+
 static iso_bead bead_of(const iso_options *options, iso_role role, bool first, double height) {
     return iso_bead_of(iso_units(iso_options_width(options, role, first, height)),
                        iso_units(height));
@@ -28,7 +32,7 @@ static void set_walls(iso_layer_settings *s, const iso_options *options, bool fi
         .inner = bead_of(options, ISO_ROLE_PERIMETER, first, height),
         .external_first = options->external_perimeters_first,
         .small_length = iso_units(2 * PI * SMALL_RADIUS),
-        .arc_tolerance = tolerance > 1 ? tolerance : 1,
+        .arc_tolerance = tolerance > FINEST_ARC ? tolerance : FINEST_ARC,
     };
 }
 

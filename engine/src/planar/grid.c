@@ -19,13 +19,6 @@ static unsigned edge_ways(iso_point a, iso_point b) {
            (unsigned)(b.y < a.y) << 3;
 }
 
-static void box_add(iso_box *box, iso_point p) {
-    box->min.x = p.x < box->min.x ? p.x : box->min.x;
-    box->min.y = p.y < box->min.y ? p.y : box->min.y;
-    box->max.x = p.x > box->max.x ? p.x : box->max.x;
-    box->max.y = p.y > box->max.y ? p.y : box->max.y;
-}
-
 /* Slots of a contour are consecutive until something is split, so runs are too. Returns the sum of
  * the runs' lengths. */
 static int64_t find_runs(iso_grid_layer *layer, const iso_edges *edges, int64_t longest) {

@@ -8,6 +8,7 @@
 #define ISO_PLANAR_GRID_H
 
 #include "planar/edges.h"
+#include "planar/predicate.h"
 
 enum { GRID_LAYERS_MAX = 40 };
 
@@ -51,16 +52,6 @@ static inline bool run_is_bent(const iso_grid *grid, const iso_run *run) {
                (run->box.max.x - grid->origin.x) >> grid->shift &&
            (run->box.min.y - grid->origin.y) >> grid->shift !=
                (run->box.max.y - grid->origin.y) >> grid->shift;
-}
-
-static inline iso_box box_of(iso_point a, iso_point b) {
-    return (iso_box){{a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y},
-                     {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y}};
-}
-
-static inline bool boxes_meet(const iso_box *a, const iso_box *b) {
-    return (a->min.x <= b->max.x) & (b->min.x <= a->max.x) & (a->min.y <= b->max.y) &
-           (b->min.y <= a->max.y);
 }
 
 #endif

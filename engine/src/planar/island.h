@@ -20,4 +20,19 @@ iso_status islands_of(iso_islands *islands, const iso_region *region,
 iso_status island_copy(iso_region *out, const iso_region *region, const iso_islands *islands,
                        int32_t island) ISO_MUST_CHECK;
 
+/* Answers which island holds a point, in about the time that it takes to look at the few whose
+ * boxes do. */
+typedef struct iso_island_search {
+    const iso_region *region;
+    const iso_islands *islands;
+    struct iso_island_box *box; /* [islands->count] from left to right */
+} iso_island_search;
+
+iso_status island_search_new(iso_island_search *search, const iso_region *region,
+                             const iso_islands *islands, iso_arena *arena) ISO_MUST_CHECK;
+
+/* The island that holds the point; -1 if none does. The caller knows that one holds it or all but
+ * does, so that the only island whose box holds it is not looked at further. */
+int32_t island_at(const iso_island_search *search, iso_point point);
+
 #endif

@@ -17,6 +17,7 @@
 
 #include <isoslice/planar.h>
 
+#include "planar/predicate.h"
 #include "planar/region.h"
 #include "planar/scratch.h"
 
@@ -204,14 +205,11 @@ static bool vanishes(const iso_point *point, int32_t count, double sign, double 
     bool outer = contour_double_area(point, count) > 0;
     if (outer == (sign > 0))
         return false;
-    iso_point min = point[0], max = point[0];
-    for (int32_t i = 1; i < count; i++) {
-        min.x = point[i].x < min.x ? point[i].x : min.x;
-        min.y = point[i].y < min.y ? point[i].y : min.y;
-        max.x = point[i].x > max.x ? point[i].x : max.x;
-        max.y = point[i].y > max.y ? point[i].y : max.y;
-    }
-    return (double)max.x - min.x <= 2 * distance || (double)max.y - min.y <= 2 * distance;
+    iso_box box = {point[0], point[0]};
+    for (int32_t i = 1; i < count; i++)
+        box_add(&box, point[i]);
+    return (double)box.max.x - box.min.x <= 2 * distance ||
+           (double)box.max.y - box.min.y <= 2 * distance;
 }
 
 static iso_status draw_raw(const iso_region *in, const iso_offset_options *options,

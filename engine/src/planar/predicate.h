@@ -33,6 +33,27 @@ static inline bool box_holds(iso_point a, iso_point b, iso_point c) {
            (a.y < b.y ? a.y <= c.y && c.y <= b.y : b.y <= c.y && c.y <= a.y);
 }
 
+static inline iso_box box_of(iso_point a, iso_point b) {
+    return (iso_box){{a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y},
+                     {a.x < b.x ? b.x : a.x, a.y < b.y ? b.y : a.y}};
+}
+
+static inline bool boxes_meet(const iso_box *a, const iso_box *b) {
+    return (a->min.x <= b->max.x) & (b->min.x <= a->max.x) & (a->min.y <= b->max.y) &
+           (b->min.y <= a->max.y);
+}
+
+static inline bool box_has(const iso_box *box, iso_point p) {
+    return (box->min.x <= p.x) & (p.x <= box->max.x) & (box->min.y <= p.y) & (p.y <= box->max.y);
+}
+
+static inline void box_add(iso_box *box, iso_point p) {
+    box->min.x = p.x < box->min.x ? p.x : box->min.x;
+    box->min.y = p.y < box->min.y ? p.y : box->min.y;
+    box->max.x = p.x > box->max.x ? p.x : box->max.x;
+    box->max.y = p.y > box->max.y ? p.y : box->max.y;
+}
+
 /* Does the segment ab meet the hot pixel of c, the half-open unit square around it? (Hobby 1999.)
  * The line does if it comes within (|dx| + |dy|) / 2 of c in the measure of orient2d; on a tie it
  * touches one corner, and only the lower left one belongs to the pixel. Within the box of ab the
