@@ -265,6 +265,14 @@ class Cli(unittest.TestCase):
         done = self.run_it("contours", "part.stl", "-o", "part.svg", "-c", "prusa.ini")
         self.assertIn(b"wipe, spiral_vase", done.stderr)
 
+    def test_settings_come_from_a_pipe_too(self):
+        for text in (b"perimeters = 1\n", b"; perimeters = 1\n", b"perimeters = 1\n" + b"#" * 100000):
+            self.run_it("part.stl", "-c", "/dev/stdin", "--report", "report.json", input=text)
+            report = json.loads((self.at / "report.json").read_text())
+            self.assertEqual({"perimeters": "1"}, report["options"])
+        for text in (b"perimeters = 1\0\n", b"#" * (9 << 20)):
+            self.run_it("part.stl", "-c", "/dev/stdin", input=text, code=6)
+
     def test_gcode_is_sliced_again_the_same_from_its_own_settings(self):
         self.run_it("part.stl", "-o", "first.gcode", "--layer-height", "0.17", "--perimeters", "2",
                     "--center", "77,66", "--end-gcode", "M104 S0\\nM84 ; = done\\n")

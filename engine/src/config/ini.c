@@ -30,6 +30,12 @@ static iso_status unreadable(const char *path) {
     return iso_fail(ISO_BAD_CONFIG, "%s: can't be read: %s", path, strerror(errno));
 }
 
+static iso_status end_text(char *text, size_t length, const char *path) {
+    text[length] = 0;
+    return memchr(text, 0, length) ? iso_fail(ISO_BAD_CONFIG, "%s: is not a text file", path)
+                                   : ISO_OK;
+}
+
 /* The last TAIL_SIZE bytes of a file. *whole tells whether that is all of it. */
 static iso_status read_tail(char **text, FILE *file, const char *path, bool *whole) {
     if (fseeko(file, 0, SEEK_END) != 0)
@@ -45,16 +51,33 @@ static iso_status read_tail(char **text, FILE *file, const char *path, bool *who
     errno = EIO;
     if (fread(*text, 1, length, file) != length)
         return unreadable(path);
-    (*text)[length] = 0;
-    return memchr(*text, 0, length) ? iso_fail(ISO_BAD_CONFIG, "%s: is not a text file", path)
-                                    : ISO_OK;
+    return end_text(*text, length, path);
+}
+
+/* Of a pipe, all there is. */
+static iso_status read_pipe(char **text, FILE *file, const char *path, bool *whole) {
+    int64_t capacity = 0;
+    size_t length = 0, got = 1;
+    *whole = true;
+    while (got > 0 && length <= TAIL_SIZE) {
+        ISO_TRY(ISO_GROW(*text, capacity, (int64_t)length + 4097));
+        got = fread(*text + length, 1, (size_t)capacity - length - 1, file);
+        length += got;
+    }
+    if (ferror(file))
+        return unreadable(path);
+    if (length > TAIL_SIZE)
+        return iso_fail(ISO_BAD_CONFIG, "%s: is too long for a configuration", path);
+    return end_text(*text, length, path);
 }
 
 static iso_status read_text(char **text, const char *path, bool *whole) {
     FILE *file = fopen(path, "rb");
     if (!file)
         return unreadable(path);
-    iso_status status = read_tail(text, file, path, whole);
+    bool is_pipe = fseeko(file, 0, SEEK_END) != 0 && errno == ESPIPE;
+    iso_status status =
+        is_pipe ? read_pipe(text, file, path, whole) : read_tail(text, file, path, whole);
     fclose(file);
     return status;
 }
