@@ -153,18 +153,16 @@ static void list_options_markdown(void) {
         format_range(range, sizeof range, i);
         bool has_text = info->kind == ISO_VALUE_TEXT;
         printf("| `%s` | %s%s%s | %s | %s | %s |\n", info->key,
-               *info->initial && !has_text ? "`" : "", has_text ? "below" : info->initial,
+               *info->initial && !has_text ? "`" : "",
+               *info->initial && has_text ? "below" : info->initial,
                *info->initial && !has_text ? "`" : "", unit_of(unit, info), range, info->help);
     }
     for (int32_t i = 0; i < iso_option_count(); i++) {
-        static iso_options initial;
+        static iso_value initial;
         const iso_option_info *info = iso_option_at(i);
-        if (info->kind != ISO_VALUE_TEXT)
-            continue;
-        iso_options_defaults(&initial);
-        const char *text =
-            strcmp(info->key, "start_gcode") == 0 ? initial.start_gcode : initial.end_gcode;
-        printf("\n`%s`:\n\n```\n%s\n```\n", info->key, text);
+        if (info->kind == ISO_VALUE_TEXT && *info->initial &&
+            !iso_value_parse(&initial, info, info->initial))
+            printf("\n`%s`:\n\n```\n%s\n```\n", info->key, initial.text);
     }
 }
 
@@ -219,9 +217,12 @@ static void man_options(void) {
         char text[256];
         snprintf(text, sizeof text, *info->initial ? "(%s%s%s; default %s)" : "(%s%s%s)", range,
                  *info->unit ? " " : "", unit_of(unit, info), info->initial);
-        print_roff(info->kind == ISO_VALUE_TEXT ? "Default:" : text);
-        if (info->kind == ISO_VALUE_TEXT)
+        if (info->kind != ISO_VALUE_TEXT) {
+            print_roff(text);
+        } else if (*info->initial) {
+            print_roff("Default:");
             print_roff(info->initial);
+        }
     }
 }
 

@@ -48,6 +48,7 @@ typedef struct iso_job {
     iso_gcode_writer *writer;
     char *start, *end; /* expanded texts */
     double seconds[ISO_STAGE_COUNT];
+    int64_t bytes[ISO_STAGE_COUNT]; /* of each stage's output, at its largest */
 } iso_job;
 
 static void progress(const iso_job *job, double done, const char *stage) {
@@ -63,14 +64,6 @@ static iso_status read_models(iso_job *job, const char *const *input) {
         progress(job, 0.1 * i / job->model_count, stage_name[ISO_STAGE_READ]);
         ISO_TRY(iso_mesh_read(mesh, input[i]));
         ISO_TRY(iso_report_add_input(job->report, input[i], mesh));
-        if (i == 0) {
-            job->min = mesh->min;
-            job->max = mesh->max;
-        }
-        job->min = (iso_vec3){fmin(job->min.x, mesh->min.x), fmin(job->min.y, mesh->min.y),
-                              fmin(job->min.z, mesh->min.z)};
-        job->max = (iso_vec3){fmax(job->max.x, mesh->max.x), fmax(job->max.y, mesh->max.y),
-                              fmax(job->max.z, mesh->max.z)};
     }
     return ISO_OK;
 }
@@ -123,14 +116,23 @@ static iso_status check_volume(const iso_job *job) {
 }
 
 static iso_status place_models(iso_job *job) {
-    iso_vec2 center = iso_options_center(job->options);
-    iso_vec3 by = {center.x - (job->min.x + job->max.x) / 2,
-                   center.y - (job->min.y + job->max.y) / 2, -job->min.z};
-    for (int32_t i = 0; i < job->model_count; i++)
-        iso_mesh_translate(&job->mesh[i], by);
-    job->min = (iso_vec3){job->min.x + by.x, job->min.y + by.y, 0};
-    job->max = (iso_vec3){job->max.x + by.x, job->max.y + by.y, job->max.z + by.z};
+    iso_meshes_place(job->mesh, job->model_count, iso_options_center(job->options));
+    job->min = job->mesh[0].min;
+    job->max = job->mesh[0].max;
+    for (int32_t i = 1; i < job->model_count; i++) {
+        const iso_mesh *mesh = &job->mesh[i];
+        job->min = (iso_vec3){fmin(job->min.x, mesh->min.x), fmin(job->min.y, mesh->min.y),
+                              fmin(job->min.z, mesh->min.z)};
+        job->max = (iso_vec3){fmax(job->max.x, mesh->max.x), fmax(job->max.y, mesh->max.y),
+                              fmax(job->max.z, mesh->max.z)};
+    }
     return check_volume(job);
+}
+
+static int64_t slices_bytes(const iso_slices *slices) {
+    return slices->crossing_count * (int64_t)sizeof *slices->point +
+           slices->contour_count * (int64_t)sizeof *slices->contour_first +
+           slices->level_count * (int64_t)sizeof *slices->level_first;
 }
 
 /* Each mesh is let go as soon as it is sliced. */
@@ -150,6 +152,8 @@ static iso_status slice_models(iso_job *job) {
         ISO_TRY(iso_slice_planar(&job->slices[i], mesh, &job->levels));
         report->mesh_volume += iso_mesh_volume_between(mesh, 0, report->printed_height);
         job->projected += projected_area(mesh);
+        job->bytes[ISO_STAGE_READ] += job->report->input[i].mesh_bytes;
+        job->bytes[ISO_STAGE_SLICE] += slices_bytes(&job->slices[i]);
         iso_mesh_free(mesh);
     }
     return ISO_OK;
@@ -198,9 +202,28 @@ static iso_status fill_task(void *payload, int64_t number, int worker) {
     return layer_fill(window_layer(&job->window, index), &job->hand[worker], &around);
 }
 
+/* Models lie on the bed; what is drawn around them need not. */
+static iso_status check_skirt(const iso_job *job, const iso_paths *paths) {
+    for (int32_t i = 0; i < paths->count; i++) {
+        const iso_path *path = &paths->path[i];
+        for (int32_t v = path->first; path->role == ISO_ROLE_SKIRT && v < path->first + path->count;
+             v++) {
+            iso_point at = paths->vertex[v].at;
+            if (!on_bed(&job->options->bed_shape, iso_mm(at.x), iso_mm(at.y)))
+                return iso_fail(ISO_OUTSIDE,
+                                "the skirt reaches beyond the bed at (%.2f, %.2f); see skirts and "
+                                "skirt_distance",
+                                iso_mm(at.x), iso_mm(at.y));
+        }
+    }
+    return ISO_OK;
+}
+
 static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) {
     iso_layer *layer = window_layer(&job->window, index);
     double begun = iso_stage_clock();
+    if (index == 0)
+        ISO_TRY(check_skirt(job, &layer->paths));
     ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, position, &job->hand[0].arena));
     double ordered = iso_stage_clock();
     double top = job->levels.top[index] + job->options->z_offset;
@@ -345,14 +368,40 @@ static void report_kernel(iso_job *job) {
     }
 }
 
+static int64_t region_bytes(const iso_region *region) {
+    return region->point_capacity * (int64_t)sizeof *region->point +
+           region->contour_capacity * (int64_t)(sizeof *region->first + sizeof *region->parent);
+}
+
+static int64_t paths_bytes(const iso_paths *paths) {
+    return paths->vertex_capacity * (int64_t)sizeof *paths->vertex +
+           paths->path_capacity * (int64_t)sizeof *paths->path;
+}
+
+/* The window's layers keep their room from layer to layer, so at the end it is the largest there
+ * was. Walls and fill share the paths. */
+static void measure_window(iso_job *job) {
+    const iso_window *window = &job->window;
+    for (int32_t i = 0; window->layer && i < window->ring; i++) {
+        const iso_layer *layer = &window->layer[i];
+        job->bytes[ISO_STAGE_REGIONS] += region_bytes(&layer->region);
+        job->bytes[ISO_STAGE_WALLS] += region_bytes(&layer->area);
+        for (int32_t k = 0; k < layer->levels; k++)
+            job->bytes[ISO_STAGE_SHELLS] += region_bytes(&layer->run[k]);
+        job->bytes[ISO_STAGE_FILL] += paths_bytes(&layer->paths);
+    }
+    job->bytes[ISO_STAGE_ORDER] = paths_bytes(&job->ordered);
+}
+
 static iso_status report_stages(iso_job *job, double begun) {
     struct rusage usage;
     report_kernel(job);
+    measure_window(job);
     job->report->seconds = iso_stage_clock() - begun;
     if (getrusage(RUSAGE_SELF, &usage) == 0)
         job->report->peak_memory_kib = usage.ru_maxrss;
     for (int s = 0; s < ISO_STAGE_COUNT; s++)
-        ISO_TRY(iso_report_add_stage(job->report, stage_name[s], job->seconds[s], 0));
+        ISO_TRY(iso_report_add_stage(job->report, stage_name[s], job->seconds[s], job->bytes[s]));
     return ISO_OK;
 }
 

@@ -411,6 +411,22 @@ static void test_placeholders_are_filled_in(void) {
     CHECK_OK(iso_options_expand(out, 8, "M104 S[perimeters]", &options));
 }
 
+static void test_placeholders_of_a_layer(void) {
+    char out[64];
+    iso_options_defaults(&options);
+    CHECK(settings_of_gcode(&options, "", "", 0).layer_text == NULL);
+    CHECK_OK(iso_options_set(&options, "z_offset", "0.5", "test"));
+    CHECK_OK(
+        iso_options_set(&options, "layer_gcode", ";L [layer_num] {layer_z} [temperature]", ""));
+    iso_gcode_options gcode = settings_of_gcode(&options, "", "", 0);
+    CHECK_OK(gcode.layer_text(out, sizeof out, gcode.layer_payload, 7, 0.85));
+    CHECK(strcmp(out, ";L 7 0.35 200") == 0); /* as PrusaSlicer 2.5 has it: without the offset */
+    CHECK_STATUS(ISO_BAD_CONFIG, gcode.layer_text(out, 9, gcode.layer_payload, 7, 0.85));
+    CHECK_OK(iso_options_set(&options, "layer_gcode", "[layer_number]", ""));
+    CHECK_STATUS(ISO_BAD_CONFIG, gcode.layer_text(out, sizeof out, gcode.layer_payload, 7, 0.85));
+    CHECK_STATUS(ISO_BAD_CONFIG, iso_options_expand(out, sizeof out, "[layer_num]", &options));
+}
+
 static void test_misspelt_words_are_near_and_others_are_not(void) {
     CHECK_EQUAL(0, iso_edit_distance("layer_height", "layer-height"));
     CHECK_EQUAL(2, iso_edit_distance("layer_height", "layer_hieght"));
@@ -443,6 +459,7 @@ int main(void) {
     RUN(test_heights_centre_and_overlap);
     RUN(test_options_that_do_not_go_together_are_refused);
     RUN(test_placeholders_are_filled_in);
+    RUN(test_placeholders_of_a_layer);
     RUN(test_misspelt_words_are_near_and_others_are_not);
     return check_verdict();
 }

@@ -429,6 +429,17 @@ static void test_temperatures_of_the_start_text_are_enough(void) {
     free(r.text);
 }
 
+static iso_status layer_text(char *text, size_t size, const void *payload, int32_t index,
+                             double z) {
+    snprintf(text, size, "%s ; %d at %g", (const char *)payload, index, z);
+    return ISO_OK;
+}
+
+static iso_status refuse_layer(char *text, size_t size, const void *payload, int32_t index,
+                               double z) {
+    return index == 1 ? iso_fail(ISO_BAD_CONFIG, "no") : layer_text(text, size, payload, index, z);
+}
+
 /* Where a text of the user's moved the head, nothing is known of its place after it. */
 static void test_layer_text_that_moves(void) {
     iso_paths layer[2] = {{0}, {0}};
@@ -436,16 +447,20 @@ static void test_layer_text_that_moves(void) {
         add_square(&layer[l], 0, 0, 50000, ISO_ROLE_PERIMETER, 4500);
     iso_gcode_options o = plain();
     iso_gcode_totals totals;
-    o.layer_gcode = "M400 ; G1 in a comment";
+    o.layer_text = layer_text;
+    o.layer_payload = "M400 ; G1 in a comment";
     reading r = print(&totals, &o, layer, 2);
-    CHECK_EQUAL(2, reading_count(&r, "M400 ; G1 in a comment\n"));
+    CHECK(strstr(r.text, "\nG92 E0\nG1 Z.2 F7800\nM400 ; G1 in a comment ; 0 at 0.2\n"));
+    CHECK(strstr(r.text, "\nG92 E0\nG1 Z.4 F7800\nM400 ; G1 in a comment ; 1 at 0.4\n"));
     CHECK_EQUAL(1, reading_count(&r, "G1 X0 Y0 F7800") + reading_count(&r, "G1 X0 Y0\n"));
     free(r.text);
-    o.layer_gcode = "G1 X200 Y200 F9000\nM240";
+    o.layer_payload = "G1 X200 Y200 F9000\nM240";
     r = print(&totals, &o, layer, 2);
     CHECK_EQUAL(2, reading_count(&r, "G1 X0 Y0 F7800") + reading_count(&r, "G1 X0 Y0\n"));
     CHECK_EQUAL(3, r.pulls);
     free(r.text);
+    o.layer_text = refuse_layer;
+    CHECK_STATUS(ISO_BAD_CONFIG, write_file(&totals, &o, layer, 2));
     iso_paths_free(&layer[0]);
     iso_paths_free(&layer[1]);
 }

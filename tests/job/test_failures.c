@@ -49,6 +49,9 @@ static void test_too_large(void) {
     shape_box(&s, 0, 0, 0, 20, 20, 2);
     expect_shape_failure(ISO_OUTSIDE, "bed", &s, "center = 195,100");
     expect_shape_failure(ISO_OUTSIDE, "bed", &s, "bed_shape = 0x0,15x0,15x15,0x15");
+    expect_shape_failure(ISO_OUTSIDE, "skirt", &s, "skirts = 1\nskirt_distance = 95");
+    expect_shape_failure(ISO_OUTSIDE, "skirt", &s,
+                         "skirts = 2\nskirt_distance = 6\ncenter = 15,80");
     expect_shape_failure(ISO_OUTSIDE, "max_print_height", &s, "max_print_height = 1.9");
     expect_shape_failure(ISO_OUTSIDE, "low", &s, "layer_heights = 5\nnozzle_diameter = 5");
     shape_free(&s);

@@ -324,6 +324,14 @@ static void end_gcode(const change *c) {
     CHECK(strstr(c->a->text, "\nM84") && !strstr(c->b->text, "\nM84"));
 }
 
+static void layer_gcode(const change *c) {
+    CHECK_NEAR(c->a->report.print.bead_mm, c->b->report.print.bead_mm, 1e-9);
+    CHECK_NEAR(c->a->report.print.filament_mm, c->b->report.print.filament_mm, 1e-9);
+    CHECK(!strstr(c->a->text, "\n; layer "));
+    CHECK(strstr(c->b->text, "\nG1 Z.35 F7800\n; layer 0 at 0.35, 3 walls\n"));
+    CHECK(strstr(c->b->text, "\nG1 Z.65 F7800\n; layer 1 at 0.65, 3 walls\n"));
+}
+
 static void remaining_times(const change *c) {
     CHECK(strstr(c->a->text, "\nM73 P0") && strstr(c->a->text, "\nM73 P100 R0 "));
     CHECK(!strstr(c->b->text, "\nM73"));
@@ -407,6 +415,7 @@ static const row rows[] = {
     {BLOCK, "start_gcode", "G28\\n; first [first_layer_height], {perimeters} walls", "",
      start_gcode},
     {BLOCK, "end_gcode", "; done at [temperature]\\nM104 S0\\nM107", "", end_gcode},
+    {BLOCK, "layer_gcode", "; layer [layer_num] at {layer_z}, [perimeters] walls", "", layer_gcode},
     {BLOCK, "remaining_times", "0", "", remaining_times},
 };
 

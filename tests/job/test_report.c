@@ -56,6 +56,30 @@ static void test_time(void) {
     }
 }
 
+/* Each stage once, in its place, with its memory: the mesh's own for what was read, nothing for
+ * what is written. */
+static void test_stages(void) {
+    static const char *const name[] = {"read",   "slice", "regions", "walls",
+                                       "shells", "fill",  "order",   "write"};
+    shape s = {0};
+    print p;
+    solid_torus(&s);
+    print_shape(&p, &s, "fill_density = 15%");
+    CHECK_EQUAL(8, p.report.stage_count);
+    double sum = 0;
+    for (int i = 0; i < p.report.stage_count && i < 8; i++) {
+        const iso_report_stage *stage = &p.report.stage[i];
+        CHECK(strcmp(name[i], stage->name) == 0);
+        CHECK(stage->seconds >= 0);
+        CHECK(i == 7 ? stage->bytes == 0 : stage->bytes > 0);
+        sum += stage->seconds;
+    }
+    CHECK(sum > 0);
+    CHECK_EQUAL(p.report.input[0].mesh_bytes, p.report.stage[0].bytes);
+    print_free(&p);
+    shape_free(&s);
+}
+
 /* The first line tells the time that the caller gives, and nothing else does. */
 static void test_timestamp(void) {
     const char *path = print_path("model.stl"), *output = print_path("out.gcode");
@@ -113,6 +137,7 @@ static void test_settings_come_back(void) {
 int main(void) {
     RUN(test_volumes);
     RUN(test_time);
+    RUN(test_stages);
     RUN(test_timestamp);
     RUN(test_settings_come_back);
     CHECK(print_folder_remove());

@@ -2,12 +2,18 @@
 #ifndef ISOSLICE_GCODE_H
 #define ISOSLICE_GCODE_H
 
+#include <stddef.h>
+
 #include <isoslice/path.h>
 
 typedef enum iso_flavour { ISO_FLAVOUR_MARLIN2, ISO_FLAVOUR_MARLIN, ISO_FLAVOUR_COUNT } iso_flavour;
 
 /* PrusaSlicer's gcode_flavor names: marlin2, marlin. ISO_BAD_CONFIG for others. */
 ISO_API iso_status iso_flavour_from_name(iso_flavour *flavour, const char *name) ISO_MUST_CHECK;
+
+/* Write the text of a layer into text[size]; `index` counts from 0, z in mm is its top. */
+typedef iso_status iso_gcode_layer_text(char *text, size_t size, const void *payload, int32_t index,
+                                        double z);
 
 /* Lengths in mm, speeds in mm/s, accelerations in mm/s^2, temperatures in degrees Celsius, fan
  * speeds in percent, times in s. Names and meaning are PrusaSlicer's where it has them. Texts
@@ -43,10 +49,12 @@ typedef struct iso_gcode_options {
     double junction_deviation;
     double max_speed_z;
 
-    int remaining_times;                               /* M73 P R: progress and minutes left */
-    const char *start_gcode, *end_gcode, *layer_gcode; /* layer_gcode after each change of layer */
-    const char *generator;                             /* "isoslice 0.1.0" */
-    int64_t timestamp; /* seconds since 1970, UTC, of the first line */
+    int remaining_times; /* M73 P R: progress and minutes left */
+    const char *start_gcode, *end_gcode;
+    iso_gcode_layer_text *layer_text; /* of what comes once a layer's height is reached; or NULL */
+    const void *layer_payload;
+    const char *generator; /* "isoslice 0.1.0" */
+    int64_t timestamp;     /* seconds since 1970, UTC, of the first line */
 } iso_gcode_options;
 
 ISO_API iso_gcode_options iso_gcode_defaults(void);

@@ -25,7 +25,7 @@ typedef struct iso_report_stage {
     const char
         *name;      /* a constant: "read", "slice", "regions", "walls", "fill", "order", "write" */
     double seconds; /* on the clock */
-    int64_t bytes;  /* of its largest output in memory, or 0 if not known */
+    int64_t bytes;  /* of what it keeps in memory, at its largest; 0: nothing */
 } iso_report_stage;
 
 /* Codes are stable: scripts may look for them. docs/command-line.md lists them. */

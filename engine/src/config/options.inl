@@ -171,6 +171,10 @@ ISO_OPTION(end_gcode, TEXT,
            "G28 X0 ; move out of the way\\n"
            "M84 ; motors off",
            "", 0, 0, "G-code", "What comes after the print. [key] stands for an option's value.")
+ISO_OPTION(
+    layer_gcode, TEXT, "", "", 0, 0, "G-code",
+    "What comes at every layer, once the nozzle is at its height. [layer_num] counts from 0, "
+    "[layer_z] is the layer's top in mm; [key] stands for an option's value.")
 ISO_OPTION(remaining_times, BOOL, "1", "", 0, 1, "G-code",
            "Tell the printer how much is done and how long it will take still (M73).")
 

@@ -7,7 +7,6 @@
 
 #include "config/ini.h"
 #include "config/notes.h"
-#include "config/value.h"
 
 enum {
     DEPTH_MAX = 32, /* of parents' parents; deeper is a circle */
@@ -216,52 +215,4 @@ iso_status iso_options_read(iso_options *options, const char *path, iso_config_n
         *options = changed;
     iso_ini_free(&from.ini);
     return status;
-}
-
-/* ---- placeholders ---- */
-
-/* [key], {key} and {key[0]}: there is one extruder. */
-static int32_t find_placeholder(const char *text, size_t length) {
-    char key[64];
-    if (length >= sizeof key)
-        return -1;
-    memcpy(key, text, length);
-    key[length] = 0;
-    char *index = strchr(key, '[');
-    if (index && (strcmp(index, "[0]") == 0 || strcmp(index, "[initial_extruder]") == 0))
-        *index = 0;
-    return iso_option_find(key);
-}
-
-iso_status iso_options_expand(char *out, size_t size, const char *text,
-                              const iso_options *options) {
-    size_t length = 0;
-    while (*text) {
-        char single[2] = {*text, 0}, value[ISO_VALUE_TEXT_SIZE];
-        const char *piece = single;
-        if (*text == '[' || *text == '{') {
-            size_t key = strcspn(text + 1, *text == '[' ? "]\n" : "}\n");
-            int32_t option = find_placeholder(text + 1, key);
-            if (option < 0 || text[key + 1] != (*text == '[' ? ']' : '}'))
-                return iso_fail(ISO_BAD_CONFIG,
-                                "the G-code has a placeholder %.*s that names no option; take it "
-                                "out or write what it stands for",
-                                key > 60 ? 60 : (int)key + 2, text);
-            iso_options_format(value, sizeof value, options, option);
-            piece = value;
-            text += key + 1;
-        }
-        size_t added = strlen(piece);
-        if (length + added >= size)
-            return iso_fail(ISO_BAD_CONFIG,
-                            "the G-code is longer than %zu bytes with its "
-                            "placeholders filled in",
-                            size - 1);
-        memcpy(out + length, piece, added + 1);
-        length += added;
-        text += *text != 0;
-    }
-    if (length == 0 && size > 0)
-        out[0] = 0;
-    return ISO_OK;
 }

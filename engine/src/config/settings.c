@@ -2,6 +2,8 @@
 
 #include <isoslice/version.h>
 
+#include "config/placeholder.h"
+
 /* A wall no longer around than a circle of this radius is a small one; the figure is PrusaSlicer's.
  */
 #define SMALL_RADIUS 6.5
@@ -148,6 +150,13 @@ static void set_filament(iso_gcode_options *g, const iso_options *options) {
     g->retract_lift = options->retract_lift;
 }
 
+static iso_status layer_text(char *text, size_t size, const void *payload, int32_t index,
+                             double z) {
+    const iso_options *options = payload;
+    const iso_placeholder of_layer[] = {{"layer_num", index}, {"layer_z", z - options->z_offset}};
+    return iso_placeholders_fill(text, size, options->layer_gcode, options, of_layer, 2);
+}
+
 iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
                                     int64_t timestamp) {
     iso_gcode_options g = iso_gcode_defaults();
@@ -157,6 +166,10 @@ iso_gcode_options settings_of_gcode(const iso_options *options, const char *star
     set_filament(&g, options);
     g.start_gcode = start;
     g.end_gcode = end;
+    if (*options->layer_gcode) {
+        g.layer_text = layer_text;
+        g.layer_payload = options;
+    }
     g.generator = "isoslice " ISO_VERSION;
     g.remaining_times = options->remaining_times;
     g.timestamp = timestamp;

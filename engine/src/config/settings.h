@@ -29,7 +29,7 @@ void settings_of_layer(iso_layer_settings *settings, const iso_options *options,
  * above is told apart. */
 void settings_shells(int32_t *top, int32_t *bottom, const iso_options *options);
 
-/* Start and end texts must already be expanded and outlive the result. */
+/* Start and end texts must already be expanded; they and the options must outlive the result. */
 iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
                                     int64_t timestamp);
 

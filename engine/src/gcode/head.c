@@ -143,6 +143,10 @@ static void move_z(iso_head *head, int32_t z) {
     head->z = z;
 }
 
+void iso_head_reach_layer(iso_head *head) {
+    move_z(head, head->layer_z + (head->retracted ? head->lift : 0));
+}
+
 static double mm_between(const iso_head *head, int32_t x, int32_t y) {
     double dx = (double)x - head->x, dy = (double)y - head->y;
     return sqrt(dx * dx + dy * dy) / 1000;

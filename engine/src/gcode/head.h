@@ -44,6 +44,9 @@ void iso_head_begin_layer(iso_head *head, int32_t z);
 /* Somebody else moved it. */
 void iso_head_forget_place(iso_head *head);
 
+/* Straight up to the layer; lifted as long as the filament is drawn back. */
+void iso_head_reach_layer(iso_head *head);
+
 void iso_head_retract(iso_head *head);
 
 /* To the path's beginning and along it, at `feed` mm/min. length[i] in units from vertex i to the

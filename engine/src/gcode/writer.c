@@ -14,6 +14,8 @@
 
 static const double pi = 3.14159265358979323846;
 
+enum { LAYER_TEXT_SIZE = 64 << 10 };
+
 struct iso_gcode_writer {
     iso_gcode_options options;
     const iso_flavour_words *words;
@@ -24,6 +26,7 @@ struct iso_gcode_writer {
     iso_progress progress;
     double *length; /* [length_capacity] units: of each segment of the layer */
     int64_t length_capacity;
+    char *layer_text; /* [LAYER_TEXT_SIZE] if there is one */
     iso_head head;
     iso_lines lines;
 };
@@ -148,6 +151,16 @@ static iso_status put_user_text(iso_gcode_writer *w, const char *text) {
     return text[size - 1] == '\n' ? ISO_OK : iso_output_write(w->lines.output, "\n", 1);
 }
 
+static iso_status put_layer_text(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
+    const iso_gcode_options *o = &w->options;
+    if (!o->layer_text)
+        return ISO_OK;
+    ISO_TRY(o->layer_text(w->layer_text, LAYER_TEXT_SIZE, o->layer_payload, layer->index,
+                          iso_mm(layer->z)));
+    iso_head_reach_layer(&w->head);
+    return put_user_text(w, w->layer_text);
+}
+
 iso_status iso_gcode_layer(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
     ISO_TRY(check_layer(layer));
     ISO_TRY(ISO_GROW(w->length, w->length_capacity, layer->paths->vertex_count));
@@ -156,7 +169,7 @@ iso_status iso_gcode_layer(iso_gcode_writer *w, const iso_gcode_layer_info *laye
     measure(&work, w, layer->paths);
     iso_cooling_pace(&pace, &work, &w->options, layer->index);
     begin_layer(w, layer);
-    ISO_TRY(put_user_text(w, w->options.layer_gcode));
+    ISO_TRY(put_layer_text(w, layer));
     ISO_TRY(mark_progress(w));
     if (w->layers++ == 1)
         change_temperatures(w);
@@ -179,6 +192,10 @@ iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
     w->fan = -1;
     iso_lines_start(&w->lines, output);
     iso_head_start(&w->head, &w->lines, &w->options);
+    if (options->layer_text && !(w->layer_text = iso_allocate(LAYER_TEXT_SIZE))) {
+        iso_gcode_writer_free(w);
+        return iso_no_memory(LAYER_TEXT_SIZE);
+    }
     *writer = w;
     return ISO_OK;
 }
@@ -188,6 +205,7 @@ void iso_gcode_writer_free(iso_gcode_writer *w) {
         return;
     iso_progress_free(&w->progress);
     iso_release(w->length);
+    iso_release(w->layer_text);
     iso_release(w);
 }
 
