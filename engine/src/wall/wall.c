@@ -6,11 +6,11 @@
 #include "base/memory.h"
 
 static iso_status inset(iso_region *out, const iso_region *in, int32_t distance,
-                        const iso_wall_options *options, iso_planar_scratch *scratch) {
+                        int32_t arc_tolerance, iso_planar_scratch *scratch) {
     iso_offset_options offset = iso_offset_defaults(-distance);
     offset.join =
         ISO_JOIN_ROUND; /* around a corner the bead's edge touches it, not a mitre's tip */
-    offset.arc_tolerance = options->arc_tolerance;
+    offset.arc_tolerance = arc_tolerance;
     return iso_offset(out, in, &offset, scratch);
 }
 
@@ -58,12 +58,15 @@ static iso_status draw_walls(iso_paths *paths, iso_region *inside, iso_region *t
     int32_t reached = 0; /* from the middle of the last wall to its inner edge */
     for (int32_t wall = 0; wall < options->count && at->count > 0; wall++) {
         iso_region *next = &turn[wall & 1];
-        ISO_TRY(inset(next, at, wall_distance(wall, options), options, scratch));
+        ISO_TRY(inset(next, at, wall_distance(wall, options), options->arc_tolerance, scratch));
         ISO_TRY(add_loops(paths, next, wall, options));
         reached = (wall == 0 ? options->external.spacing : options->inner.spacing) / 2;
         at = next;
     }
-    return inset(inside, at, reached + options->fill_inset, options, scratch);
+    /* no path runs along `inside`: the usual arcs will do */
+    int32_t usual = iso_offset_defaults(0).arc_tolerance;
+    int32_t tolerance = options->arc_tolerance > usual ? options->arc_tolerance : usual;
+    return inset(inside, at, reached + options->fill_inset, tolerance, scratch);
 }
 
 iso_status iso_walls(iso_paths *paths, iso_region *inside, const iso_region *island,
