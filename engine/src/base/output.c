@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <libgen.h>
 #include <limits.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,6 +49,21 @@ static void output_free(iso_output *output) {
     iso_release(output);
 }
 
+/* Make the file and name it for iso_output_remove_unfinished; a signal comes before both or after
+ * both. */
+static int make_unfinished(iso_output *output) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    output->descriptor = mkstemp(output->temporary);
+    int error = errno;
+    if (output->descriptor >= 0)
+        unfinished = output->temporary;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    errno = error;
+    return output->descriptor >= 0;
+}
+
 /* mkstemp gives 0600; a file of ours has the mode any other program would give it */
 static void set_usual_mode(int descriptor) {
     mode_t mask = umask(0);
@@ -70,10 +87,8 @@ static iso_status open_beside(iso_output *output, const char *path) {
     if (!output->temporary)
         return iso_no_memory(length + 8);
     snprintf(output->temporary, length + 8, "%s.XXXXXX", path);
-    output->descriptor = mkstemp(output->temporary);
-    if (output->descriptor < 0)
+    if (!make_unfinished(output))
         return not_written(path);
-    unfinished = output->temporary;
     set_usual_mode(output->descriptor);
     return ISO_OK;
 }

@@ -1,6 +1,7 @@
 #include "base/parallel.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -68,6 +69,21 @@ static void *worker_main(void *argument) {
     return NULL;
 }
 
+/* Signals are the caller's affair: the workers leave them to the threads that were there before. */
+static void start_workers(iso_pool *pool) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    for (int i = 1; i < pool->threads; i++) {
+        iso_worker *worker = &pool->worker[i];
+        *worker = (iso_worker){.pool = pool, .number = i};
+        if (pthread_create(&worker->thread, NULL, worker_main, worker) != 0)
+            break; /* fewer threads do the same work */
+        pool->started = i;
+    }
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
 iso_status iso_pool_new(iso_pool **out, int threads) {
     *out = NULL;
     if (threads <= 0)
@@ -82,13 +98,7 @@ iso_status iso_pool_new(iso_pool **out, int threads) {
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->work, NULL);
     pthread_cond_init(&pool->done, NULL);
-    for (int i = 1; i < threads; i++) {
-        iso_worker *worker = &pool->worker[i];
-        *worker = (iso_worker){.pool = pool, .number = i};
-        if (pthread_create(&worker->thread, NULL, worker_main, worker) != 0)
-            break; /* fewer threads do the same work */
-        pool->started = i;
-    }
+    start_workers(pool);
     *out = pool;
     return ISO_OK;
 }
