@@ -46,7 +46,8 @@ typedef struct iso_job {
     iso_paths ordered;
     iso_output *output;
     iso_gcode_writer *writer;
-    char *start, *end; /* expanded texts */
+    char *start, *end;           /* expanded texts */
+    int32_t empty, lowest_empty; /* layers without a path, and the first of them */
     double seconds[ISO_STAGE_COUNT];
     int64_t bytes[ISO_STAGE_COUNT]; /* of each stage's output, at its largest */
 } iso_job;
@@ -226,6 +227,8 @@ static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) 
         ISO_TRY(check_skirt(job, &layer->paths));
     ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, position, &job->hand[0].arena));
     double ordered = iso_stage_clock();
+    if (job->ordered.count == 0 && job->empty++ == 0)
+        job->lowest_empty = index;
     double top = job->levels.top[index] + job->options->z_offset;
     iso_gcode_layer_info info = {.index = index,
                                  .z = iso_units(top),
@@ -238,6 +241,15 @@ static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) 
         job->seconds[s] += layer->seconds[s];
     job->report->sliced_volume += layer->square_mm * job->levels.height[index];
     return ISO_OK;
+}
+
+static iso_status warn_of_empty_layers(const iso_job *job) {
+    if (job->empty == 0)
+        return ISO_OK;
+    return iso_report_warn(job->report, "empty-layers",
+                           "%d of %d layers have no room for a bead and stay empty, the lowest at "
+                           "z = %.3f mm",
+                           job->empty, job->levels.count, job->levels.top[job->lowest_empty]);
 }
 
 static int32_t least(int32_t a, int32_t b) {
@@ -274,7 +286,7 @@ static iso_status make_layers(iso_job *job) {
             ISO_TRY(write_layer(job, filled, &position));
     }
     progress(job, 1, "done");
-    return ISO_OK;
+    return warn_of_empty_layers(job);
 }
 
 /* ---- output ---- */

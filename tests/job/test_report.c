@@ -80,6 +80,22 @@ static void test_stages(void) {
     shape_free(&s);
 }
 
+/* A spike that no bead fits into is not printed, and that is said. */
+static void test_empty_layers(void) {
+    shape s = {0};
+    print p;
+    shape_box(&s, 0, 0, 0, 10, 10, 2);
+    shape_box(&s, 4, 4, 2, 4.1, 4.1, 3);
+    print_shape(&p, &s, "layer_height = 0.2\nfirst_layer_height = 0.2");
+    if (CHECK_EQUAL(1, p.report.warning_count)) {
+        CHECK(strcmp("empty-layers", p.report.warning[0].code) == 0);
+        CHECK(strstr(p.report.warning[0].message, "5 of 15 layers") != NULL);
+        CHECK(strstr(p.report.warning[0].message, "z = 2.200 mm") != NULL);
+    }
+    print_free(&p);
+    shape_free(&s);
+}
+
 /* The first line tells the time that the caller gives, and nothing else does. */
 static void test_timestamp(void) {
     const char *path = print_path("model.stl"), *output = print_path("out.gcode");
@@ -138,6 +154,7 @@ int main(void) {
     RUN(test_volumes);
     RUN(test_time);
     RUN(test_stages);
+    RUN(test_empty_layers);
     RUN(test_timestamp);
     RUN(test_settings_come_back);
     CHECK(print_folder_remove());
