@@ -222,6 +222,50 @@ static iso_status collide_within(iso_snap *snap, iso_resident *resident, int32_t
     return ISO_OK;
 }
 
+typedef struct iso_crowd {
+    iso_resident *resident;
+    int32_t count;
+} iso_crowd;
+
+/* The first of the residents, sorted, that starts at x or further right. */
+static int32_t first_from(const iso_crowd *crowd, int64_t x) {
+    int32_t low = 0, end = crowd->count;
+    while (low < end) {
+        int32_t middle = low + (end - low) / 2;
+        if (crowd->resident[middle].x0 < x)
+            low = middle + 1;
+        else
+            end = middle;
+    }
+    return low;
+}
+
+/* Each of a with those of b that start within it, `from` units behind its own start or later. */
+static iso_status collide_starts(iso_snap *snap, const iso_crowd *a, const iso_crowd *b,
+                                 int32_t cell, int from) {
+    for (int32_t i = 0; i < a->count; i++) {
+        const iso_resident *r = &a->resident[i];
+        for (int32_t j = first_from(b, (int64_t)r->x0 + from);
+             j < b->count && b->resident[j].x0 <= r->run->box.max.x; j++)
+            ISO_TRY(collide_residents(snap, r, &b->resident[j], cell));
+    }
+    return ISO_OK;
+}
+
+/* Fresh runs with old ones. In a crowd, of two that share some x one starts within the other. */
+static iso_status collide_between(iso_snap *snap, iso_crowd fresh, iso_crowd old, int32_t cell) {
+    if ((int64_t)fresh.count * old.count <= CROWD * CROWD) {
+        for (int32_t i = 0; i < fresh.count; i++)
+            for (int32_t j = 0; j < old.count; j++)
+                ISO_TRY(collide_residents(snap, &fresh.resident[i], &old.resident[j], cell));
+        return ISO_OK;
+    }
+    sort_residents(fresh.resident, fresh.count);
+    sort_residents(old.resident, old.count);
+    ISO_TRY(collide_starts(snap, &fresh, &old, cell, 0));
+    return collide_starts(snap, &old, &fresh, cell, 1);
+}
+
 static int32_t largest_cell(const iso_grid *grid) {
     int32_t largest = 0, cells = grid->columns * grid->rows;
     for (int32_t l = 0; l < grid->layer_count; l++) {
@@ -248,10 +292,8 @@ static iso_status find_collisions(iso_snap *snap, iso_arena *arena) {
         int32_t count = fetch_residents(fresh, snap, newest, cell);
         ISO_TRY(collide_within(snap, fresh, count, cell));
         for (int32_t l = 0; l < newest; l++) {
-            int32_t old_count = fetch_residents(old, snap, l, cell);
-            for (int32_t i = 0; i < count; i++)
-                for (int32_t j = 0; j < old_count; j++)
-                    ISO_TRY(collide_residents(snap, &fresh[i], &old[j], cell));
+            iso_crowd before = {old, fetch_residents(old, snap, l, cell)};
+            ISO_TRY(collide_between(snap, (iso_crowd){fresh, count}, before, cell));
         }
     }
     return ISO_OK;
@@ -286,8 +328,11 @@ static iso_status heat_crossings(iso_snap *snap) {
         int32_t cell = grid_cell(grid, at);
         for (int32_t l = 0; l < grid->layer_count; l++) {
             const iso_grid_layer *layer = &grid->layer[l];
-            for (int32_t k = layer->first[cell]; k < layer->first[cell + 1]; k++)
-                ISO_TRY(heat_run(snap, &layer->run[layer->entry[k]], at));
+            for (int32_t k = layer->first[cell]; k < layer->first[cell + 1]; k++) {
+                const iso_run *run = &layer->run[layer->entry[k]];
+                if (box_has(&run->box, at))
+                    ISO_TRY(heat_run(snap, run, at));
+            }
         }
     }
     return ISO_OK;
