@@ -79,13 +79,13 @@ static int in_a_join(const iso_region *region, const iso_offset_options *options
 int oracle_offset(const iso_region *region, const iso_offset_options *options, iso_point p) {
     int grows = options->distance > 0, round = options->join == ISO_JOIN_ROUND;
     int64_t distance = grows ? options->distance : -(int64_t)options->distance;
-    int64_t off = SLACK + (round ? options->arc_tolerance : 0); /* on either side of the arc */
+    int64_t beyond = SLACK + (round ? options->arc_tolerance : 0); /* arcs are drawn by tangents */
     int in = oracle_winding(region, p, NULL) != 0;
     if (grows ? in : !in) /* the side that spreads */
         return oracle_near(region, p, SLACK) ? 0 : grows ? 1 : -1;
-    if (oracle_near(region, p, distance - off))
+    if (oracle_near(region, p, distance - SLACK))
         return grows ? 1 : -1;
-    if (oracle_near(region, p, distance + off))
+    if (oracle_near(region, p, distance + beyond))
         return 0;
     if (round || !in_a_join(region, options, p, SLACK, 1))
         return grows ? -1 : 1;

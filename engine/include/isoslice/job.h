@@ -19,8 +19,9 @@ typedef struct iso_job_hooks {
  * not at all. Models keep their places relative to each other; their common box is centred on the
  * bed and set down on it. `report` (zeroed or freed before) tells what happened as far as the job
  * came; free it in any case. The same bytes for any number of threads. Statuses are those of the
- * stages, and ISO_OUTSIDE: larger than the bed or higher than max_print_height, or nothing to print
- * at these layers; ISO_NOT_VERIFIED: the sliced volume isn't the model's. */
+ * stages, and ISO_OUTSIDE: the models or the skirt reach beyond the bed or max_print_height, or
+ * there is nothing to print at these layers; ISO_NOT_VERIFIED: the sliced volume isn't the model's.
+ */
 ISO_API iso_status iso_job_run(iso_report *report, const iso_options *options,
                                const char *const *input, int32_t input_count, const char *output,
                                const iso_job_hooks *hooks) ISO_MUST_CHECK;
