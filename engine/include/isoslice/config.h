@@ -44,7 +44,60 @@ typedef struct iso_numbers {
     double value[ISO_NUMBERS_MAX];
 } iso_numbers;
 
-typedef enum iso_fill_pattern { ISO_PATTERN_RECTILINEAR, ISO_PATTERN_GRID } iso_fill_pattern;
+typedef enum iso_fill_pattern {
+    ISO_PATTERN_RECTILINEAR,
+    ISO_PATTERN_ALIGNED,
+    ISO_PATTERN_MONOTONIC,
+    ISO_PATTERN_GRID,
+    ISO_PATTERN_TRIANGLES,
+    ISO_PATTERN_STARS,
+    ISO_PATTERN_CUBIC,
+    ISO_PATTERN_LINE,
+    ISO_PATTERN_CONCENTRIC,
+    ISO_PATTERN_HONEYCOMB,
+    ISO_PATTERN_HONEYCOMB_3D,
+    ISO_PATTERN_GYROID,
+    ISO_PATTERN_HILBERT,
+    ISO_PATTERN_ARCHIMEDEAN,
+    ISO_PATTERN_OCTAGRAM
+} iso_fill_pattern;
+
+typedef enum iso_seam {
+    ISO_SEAM_RANDOM,
+    ISO_SEAM_NEAREST,
+    ISO_SEAM_ALIGNED,
+    ISO_SEAM_REAR
+} iso_seam;
+typedef enum iso_brim_type {
+    ISO_BRIM_NONE,
+    ISO_BRIM_OUTER,
+    ISO_BRIM_INNER,
+    ISO_BRIM_BOTH
+} iso_brim_type;
+typedef enum iso_draft_shield {
+    ISO_SHIELD_DISABLED,
+    ISO_SHIELD_LIMITED,
+    ISO_SHIELD_ENABLED
+} iso_draft_shield;
+typedef enum iso_fuzzy_skin { ISO_FUZZY_NONE, ISO_FUZZY_EXTERNAL, ISO_FUZZY_ALL } iso_fuzzy_skin;
+typedef enum iso_ironing_type {
+    ISO_IRONING_TOP,
+    ISO_IRONING_TOPMOST,
+    ISO_IRONING_SOLID
+} iso_ironing_type;
+typedef enum iso_limits_usage {
+    ISO_LIMITS_EMIT,
+    ISO_LIMITS_ESTIMATE,
+    ISO_LIMITS_IGNORE
+} iso_limits_usage;
+typedef enum iso_label_style {
+    ISO_LABELS_DISABLED,
+    ISO_LABELS_OCTOPRINT,
+    ISO_LABELS_FIRMWARE
+} iso_label_style;
+typedef enum iso_arc_fitting { ISO_ARCS_DISABLED, ISO_ARCS_EMIT_CENTER } iso_arc_fitting;
+typedef enum iso_cut_keep { ISO_CUT_BOTH, ISO_CUT_UPPER, ISO_CUT_LOWER } iso_cut_keep;
+typedef enum iso_mirror { ISO_MIRROR_NONE, ISO_MIRROR_X, ISO_MIRROR_Y, ISO_MIRROR_Z } iso_mirror;
 
 typedef enum iso_option_kind {
     ISO_VALUE_BOOL,     /* bool */
@@ -52,13 +105,28 @@ typedef enum iso_option_kind {
     ISO_VALUE_NUMBER,   /* double, in the option's unit */
     ISO_VALUE_PERCENT,  /* double: 20 is 20 % */
     ISO_VALUE_RELATIVE, /* iso_relative */
-    ISO_VALUE_PATTERN,  /* int32_t, an iso_fill_pattern */
-    ISO_VALUE_FLAVOUR,  /* int32_t, an iso_flavour */
     ISO_VALUE_TEXT,     /* char [ISO_TEXT_SIZE], lines end in '\n' */
     ISO_VALUE_PLACE,    /* iso_place */
     ISO_VALUE_POINTS,   /* iso_points */
-    ISO_VALUE_NUMBERS   /* iso_numbers */
+    ISO_VALUE_NUMBERS,  /* iso_numbers */
+    /* words of a list, each an int32_t of the enum */
+    ISO_VALUE_PATTERN, /* iso_fill_pattern */
+    ISO_VALUE_FLAVOUR, /* iso_flavour */
+    ISO_VALUE_SEAM,    /* iso_seam */
+    ISO_VALUE_BRIM,    /* iso_brim_type */
+    ISO_VALUE_SHIELD,  /* iso_draft_shield */
+    ISO_VALUE_FUZZY,   /* iso_fuzzy_skin */
+    ISO_VALUE_IRONING, /* iso_ironing_type */
+    ISO_VALUE_LIMITS,  /* iso_limits_usage */
+    ISO_VALUE_LABELS,  /* iso_label_style */
+    ISO_VALUE_ARCS,    /* iso_arc_fitting */
+    ISO_VALUE_CUT,     /* iso_cut_keep */
+    ISO_VALUE_MIRROR   /* iso_mirror */
 } iso_option_kind;
+
+static inline bool iso_option_is_word(iso_option_kind kind) {
+    return kind >= ISO_VALUE_PATTERN;
+}
 
 typedef struct iso_options {
 #define ISO_FIELD_BOOL(key) bool key;
@@ -68,6 +136,16 @@ typedef struct iso_options {
 #define ISO_FIELD_RELATIVE(key) iso_relative key;
 #define ISO_FIELD_PATTERN(key) int32_t key;
 #define ISO_FIELD_FLAVOUR(key) int32_t key;
+#define ISO_FIELD_SEAM(key) int32_t key;
+#define ISO_FIELD_BRIM(key) int32_t key;
+#define ISO_FIELD_SHIELD(key) int32_t key;
+#define ISO_FIELD_FUZZY(key) int32_t key;
+#define ISO_FIELD_IRONING(key) int32_t key;
+#define ISO_FIELD_LIMITS(key) int32_t key;
+#define ISO_FIELD_LABELS(key) int32_t key;
+#define ISO_FIELD_ARCS(key) int32_t key;
+#define ISO_FIELD_CUT(key) int32_t key;
+#define ISO_FIELD_MIRROR(key) int32_t key;
 #define ISO_FIELD_TEXT(key) char key[ISO_TEXT_SIZE];
 #define ISO_FIELD_PLACE(key) iso_place key;
 #define ISO_FIELD_POINTS(key) iso_points key;

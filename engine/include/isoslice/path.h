@@ -1,7 +1,7 @@
 /* Paths: what the nozzle is to draw on one layer.
  *
- * A path is a run of vertices; the bead from vertex i to i + 1 has the width and area of vertex i.
- * Role, tool, object and speed class are projections of the path. */
+ * A path is a run of vertices; the bead from vertex i to i + 1 has the width, area and role of
+ * vertex i. Tool, object and speed class are projections of the path. */
 #ifndef ISOSLICE_PATH_H
 #define ISOSLICE_PATH_H
 
@@ -33,11 +33,12 @@ typedef struct iso_path_vertex {
     int32_t z;     /* units above the layer's nominal top; 0 on planar layers */
     int32_t width; /* units: the bead's full width, rounded sides included */
     int32_t area;  /* units^2 of the bead's cross-section; E = area * length / filament section */
+    int32_t role;  /* iso_role; the path's own but for pieces of it, as where a wall hangs over */
 } iso_path_vertex;
 
 typedef struct iso_path {
     int32_t first, count; /* vertices; a closed path does not repeat its first vertex */
-    uint8_t role;         /* iso_role */
+    uint8_t role;         /* iso_role of the path as a whole, by which it is ordered */
     uint8_t closed;
     uint8_t tool;
     uint8_t speed_class; /* 0 usual, 1 small perimeter */
@@ -57,8 +58,8 @@ typedef struct iso_paths {
 ISO_API void iso_paths_free(iso_paths *paths);
 ISO_API void iso_paths_clear(iso_paths *paths);
 
-/* Append a path of `count` vertices, all of the same width and area, copied from points. `like`
- * gives role, closed, tool, speed class, object, group and rank. */
+/* Append a path of `count` vertices, all of the same width, area and role, copied from points.
+ * `like` gives role, closed, tool, speed class, object, group and rank. */
 ISO_API iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point *point,
                                  int32_t count, int32_t width, int32_t area) ISO_MUST_CHECK;
 

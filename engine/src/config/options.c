@@ -84,13 +84,13 @@ static void describe_range(char *text, size_t size, const iso_option_info *info)
     case ISO_VALUE_TEXT:
         snprintf(text, size, "a text");
         break;
-    case ISO_VALUE_PATTERN:
-    case ISO_VALUE_FLAVOUR:
-        for (int32_t i = 0; iso_value_word(info->kind, i) && n < size; i++)
-            n += (size_t)snprintf(text + n, size - n, "%s%s", i == 0 ? "" : ", ",
-                                  iso_value_word(info->kind, i));
-        break;
     default:
+        if (iso_option_is_word(info->kind)) {
+            for (int32_t i = 0; iso_value_word(info->kind, i) && n < size; i++)
+                n += (size_t)snprintf(text + n, size - n, "%s%s", i == 0 ? "" : ", ",
+                                      iso_value_word(info->kind, i));
+            break;
+        }
         iso_number_write(low, info->min);
         iso_number_write(high, info->max);
         snprintf(text, size, "%s to %s%s%s%s", low, high, *unit ? " " : "", unit,

@@ -9,18 +9,95 @@
  *
  *     BOOL  INTEGER  NUMBER  PERCENT
  *     RELATIVE                      in the unit, or in % of something that the help names
- *     PATTERN  FLAVOUR              a word of the lists below
+ *     PATTERN  FLAVOUR  SEAM ...     a word of the lists below
  *     TEXT  PLACE  POINTS  NUMBERS  min and max bound each coordinate or number
  */
 
 #ifdef ISO_WORD /* ISO_WORD(kind, value, word) */
 ISO_WORD(PATTERN, ISO_PATTERN_RECTILINEAR, "rectilinear")
+ISO_WORD(PATTERN, ISO_PATTERN_ALIGNED, "alignedrectilinear")
+ISO_WORD(PATTERN, ISO_PATTERN_MONOTONIC, "monotonic")
 ISO_WORD(PATTERN, ISO_PATTERN_GRID, "grid")
+ISO_WORD(PATTERN, ISO_PATTERN_TRIANGLES, "triangles")
+ISO_WORD(PATTERN, ISO_PATTERN_STARS, "stars")
+ISO_WORD(PATTERN, ISO_PATTERN_CUBIC, "cubic")
+ISO_WORD(PATTERN, ISO_PATTERN_LINE, "line")
+ISO_WORD(PATTERN, ISO_PATTERN_CONCENTRIC, "concentric")
+ISO_WORD(PATTERN, ISO_PATTERN_HONEYCOMB, "honeycomb")
+ISO_WORD(PATTERN, ISO_PATTERN_HONEYCOMB_3D, "3dhoneycomb")
+ISO_WORD(PATTERN, ISO_PATTERN_GYROID, "gyroid")
+ISO_WORD(PATTERN, ISO_PATTERN_HILBERT, "hilbertcurve")
+ISO_WORD(PATTERN, ISO_PATTERN_ARCHIMEDEAN, "archimedeanchords")
+ISO_WORD(PATTERN, ISO_PATTERN_OCTAGRAM, "octagramspiral")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN2, "marlin2")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN, "marlin")
+ISO_WORD(SEAM, ISO_SEAM_RANDOM, "random")
+ISO_WORD(SEAM, ISO_SEAM_NEAREST, "nearest")
+ISO_WORD(SEAM, ISO_SEAM_ALIGNED, "aligned")
+ISO_WORD(SEAM, ISO_SEAM_REAR, "rear")
+ISO_WORD(BRIM, ISO_BRIM_NONE, "no_brim")
+ISO_WORD(BRIM, ISO_BRIM_OUTER, "outer_only")
+ISO_WORD(BRIM, ISO_BRIM_INNER, "inner_only")
+ISO_WORD(BRIM, ISO_BRIM_BOTH, "outer_and_inner")
+ISO_WORD(SHIELD, ISO_SHIELD_DISABLED, "disabled")
+ISO_WORD(SHIELD, ISO_SHIELD_LIMITED, "limited")
+ISO_WORD(SHIELD, ISO_SHIELD_ENABLED, "enabled")
+ISO_WORD(FUZZY, ISO_FUZZY_NONE, "none")
+ISO_WORD(FUZZY, ISO_FUZZY_EXTERNAL, "external")
+ISO_WORD(FUZZY, ISO_FUZZY_ALL, "all")
+ISO_WORD(IRONING, ISO_IRONING_TOP, "top")
+ISO_WORD(IRONING, ISO_IRONING_TOPMOST, "topmost")
+ISO_WORD(IRONING, ISO_IRONING_SOLID, "solid")
+ISO_WORD(LIMITS, ISO_LIMITS_EMIT, "emit_to_gcode")
+ISO_WORD(LIMITS, ISO_LIMITS_ESTIMATE, "time_estimate_only")
+ISO_WORD(LIMITS, ISO_LIMITS_IGNORE, "ignore")
+ISO_WORD(LABELS, ISO_LABELS_DISABLED, "disabled")
+ISO_WORD(LABELS, ISO_LABELS_OCTOPRINT, "octoprint")
+ISO_WORD(LABELS, ISO_LABELS_FIRMWARE, "firmware")
+ISO_WORD(ARCS, ISO_ARCS_DISABLED, "disabled")
+ISO_WORD(ARCS, ISO_ARCS_EMIT_CENTER, "emit_center")
+ISO_WORD(CUT, ISO_CUT_BOTH, "both")
+ISO_WORD(CUT, ISO_CUT_UPPER, "upper")
+ISO_WORD(CUT, ISO_CUT_LOWER, "lower")
+ISO_WORD(MIRROR, ISO_MIRROR_NONE, "none")
+ISO_WORD(MIRROR, ISO_MIRROR_X, "x")
+ISO_WORD(MIRROR, ISO_MIRROR_Y, "y")
+ISO_WORD(MIRROR, ISO_MIRROR_Z, "z")
 #endif
 
 #ifdef ISO_OPTION
+
+ISO_OPTION(inches, BOOL, "0", "", 0, 1, "Objects", "The model's numbers are inches, not mm.")
+ISO_OPTION(scale, RELATIVE, "1", "", 0.0001, 100000, "Objects",
+           "Factor on the size of the model, or percent.")
+ISO_OPTION(scale_to_fit, NUMBERS, "", "mm", 0.001, 10000, "Objects",
+           "Make the model as large as fits into this box, given as X,Y,Z.")
+ISO_OPTION(rotate, NUMBER, "0", "deg", -360, 360, "Objects", "Turn the model about the Z axis.")
+ISO_OPTION(rotate_x, NUMBER, "0", "deg", -360, 360, "Objects",
+           "Turn the model about the X axis, before rotate.")
+ISO_OPTION(rotate_y, NUMBER, "0", "deg", -360, 360, "Objects",
+           "Turn the model about the Y axis, after rotate_x.")
+ISO_OPTION(mirror, MIRROR, "none", "", 0, 0, "Objects", "Mirror the model along an axis.")
+ISO_OPTION(cut, NUMBER, "0", "mm", 0, 10000, "Objects",
+           "Cut the model at this height above its floor; 0 not at all.")
+ISO_OPTION(cut_keep, CUT, "both", "", 0, 0, "Objects", "Which part of a cut model is printed.")
+ISO_OPTION(ensure_on_bed, BOOL, "1", "", 0, 1, "Objects", "Set every object down on the bed.")
+ISO_OPTION(split, BOOL, "0", "", 0, 1, "Objects",
+           "Make every separate piece of a model an object of its own.")
+ISO_OPTION(duplicate, INTEGER, "1", "", 1, 10000, "Objects",
+           "Print so many copies of every object, arranged on the bed.")
+ISO_OPTION(duplicate_grid, NUMBERS, "", "", 1, 1000, "Objects", "Print copies in a grid of X,Y.")
+ISO_OPTION(duplicate_distance, NUMBER, "6", "mm", 0, 1000, "Objects",
+           "Distance between arranged objects.")
+ISO_OPTION(
+    arrange, BOOL, "0", "", 0, 1, "Objects",
+    "Every model is an object of its own; find a place on the bed for each. Else models keep their places to each other.")
+ISO_OPTION(complete_objects, BOOL, "0", "", 0, 1, "Objects",
+           "Print one object after the other instead of all layer by layer.")
+ISO_OPTION(extruder_clearance_radius, NUMBER, "20", "mm", 0.1, 1000, "Objects",
+           "Radius around the nozzle in which the print head would hit what is printed.")
+ISO_OPTION(extruder_clearance_height, NUMBER, "20", "mm", 0.1, 1000, "Objects",
+           "Height above the nozzle at which the axes would hit what is printed.")
 
 ISO_OPTION(layer_height, NUMBER, "0.3", "mm", 0.01, 5, "Layers", "Height of a layer.")
 ISO_OPTION(first_layer_height, RELATIVE, "0.35", "mm", 0.01, 5, "Layers",
@@ -28,33 +105,118 @@ ISO_OPTION(first_layer_height, RELATIVE, "0.35", "mm", 0.01, 5, "Layers",
 ISO_OPTION(layer_heights, NUMBERS, "", "mm", 0.01, 5, "Layers",
            "Heights of the layers one by one from the bed up, for example 0.3,0.2,0.1; above the "
            "last one given layer_height goes on. Empty: first_layer_height, then layer_height.")
+ISO_OPTION(
+    adaptive_layers, BOOL, "0", "", 0, 1, "Layers",
+    "Choose the height of every layer by the slope of the surface: between min_layer_height and max_layer_height, as thick as cusp_height allows.")
+ISO_OPTION(cusp_height, NUMBER, "0.05", "mm", 0.001, 1, "Layers",
+           "Largest distance between the steps of adaptive layers and the true surface.")
+ISO_OPTION(min_layer_height, NUMBER, "0.07", "mm", 0.01, 5, "Layers", "Thinnest adaptive layer.")
+ISO_OPTION(max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
+           "Thickest adaptive layer; 0 takes 75% of nozzle_diameter.")
 ISO_OPTION(gcode_resolution, NUMBER, "0.0125", "mm", 0, 1, "Layers",
            "How far a printed path may lie from the exact one, to leave out needless points.")
 ISO_OPTION(z_offset, NUMBER, "0", "mm", -5, 5, "Layers",
            "Added to every Z of the output, against an end stop that is off.")
+ISO_OPTION(xy_size_compensation, NUMBER, "0", "mm", -10, 10, "Layers",
+           "Every outline is moved outwards by this; inwards if it is negative.")
+ISO_OPTION(
+    xy_hole_compensation, NUMBER, "0", "mm", -10, 10, "Layers",
+    "Every hole is widened by this, on top of xy_size_compensation; narrowed if it is negative.")
+ISO_OPTION(elefant_foot_compensation, NUMBER, "0", "mm", 0, 10, "Layers",
+           "The first layer is shrunk by this, against its being squeezed wider on the bed.")
 
 ISO_OPTION(perimeters, INTEGER, "3", "", 0, 1000, "Walls", "Number of walls on every layer.")
 ISO_OPTION(external_perimeters_first, BOOL, "0", "", 0, 1, "Walls",
            "Print the walls from the outermost in, instead of from the innermost out.")
+ISO_OPTION(thin_walls, BOOL, "1", "", 0, 1, "Walls",
+           "Places too narrow for two walls get a single one, as wide as they are.")
+ISO_OPTION(gap_fill_enabled, BOOL, "1", "", 0, 1, "Walls",
+           "Fill gaps between walls and in narrow solid areas with beads as wide as they are.")
+ISO_OPTION(
+    overhangs, BOOL, "1", "", 0, 1, "Walls",
+    "Walls over air are printed as bridges: bridge_speed, bridge_flow_ratio, bridge_fan_speed.")
+ISO_OPTION(
+    seam_position, SEAM, "aligned", "", 0, 0, "Walls",
+    "Where walls begin and end: in a line up the part, at the nearest corner, at the back of the bed, or anywhere.")
+ISO_OPTION(fuzzy_skin, FUZZY, "none", "", 0, 0, "Walls",
+           "Walls that are drawn with a random jitter, for a rough skin.")
+ISO_OPTION(fuzzy_skin_thickness, NUMBER, "0.3", "mm", 0, 10, "Walls",
+           "Width of the band that the jitter stays in.")
+ISO_OPTION(fuzzy_skin_point_dist, NUMBER, "0.8", "mm", 0.05, 10, "Walls",
+           "Mean distance between the points of the jitter.")
+ISO_OPTION(
+    spiral_vase, BOOL, "0", "", 0, 1, "Walls",
+    "Print one wall that rises without a seam over the bottom layers: one wall, no infill, no top.")
 
 ISO_OPTION(fill_density, PERCENT, "20%", "%", 0, 100, "Infill",
            "Density of the infill; 100% fills solid.")
-ISO_OPTION(fill_pattern, PATTERN, "rectilinear", "", 0, 0, "Infill",
-           "Pattern of the infill. The grid is two crossing rectilinear passes of half the density "
-           "each.")
+ISO_OPTION(
+    fill_pattern, PATTERN, "rectilinear", "", 0, 0, "Infill",
+    "Pattern of the sparse infill (docs/patterns.md). Patterns that can't fill solid give way "
+    "to rectilinear at 100%.")
+ISO_OPTION(top_fill_pattern, PATTERN, "monotonic", "", 0, 0, "Infill",
+           "Pattern of top surfaces: rectilinear, monotonic, alignedrectilinear, concentric, "
+           "hilbertcurve, archimedeanchords or octagramspiral.")
+ISO_OPTION(bottom_fill_pattern, PATTERN, "monotonic", "", 0, 0, "Infill",
+           "Pattern of bottom surfaces: as for top_fill_pattern.")
 ISO_OPTION(fill_angle, NUMBER, "45", "deg", 0, 360, "Infill",
            "Angle of the infill against the X axis; every layer turns it by 90 degrees.")
 ISO_OPTION(infill_overlap, RELATIVE, "25%", "mm", 0, 5, "Infill",
            "How far the infill reaches into the walls to bond with them; in % of the width of "
            "inner walls.")
+ISO_OPTION(
+    infill_anchor, RELATIVE, "600%", "mm", 0, 1000, "Infill",
+    "Sparse lines that end alone are bent along the wall for this length; in % of infill_extrusion_width; 0 not at all.")
+ISO_OPTION(
+    infill_anchor_max, RELATIVE, "50", "mm", 0, 1000, "Infill",
+    "Sparse lines are joined along the wall if that takes no longer than this; in % of infill_extrusion_width; 0 never joins.")
+ISO_OPTION(infill_every_layers, INTEGER, "1", "", 1, 1000, "Infill",
+           "Sparse infill of so many layers is printed at once, as thick as the nozzle allows.")
+ISO_OPTION(infill_first, BOOL, "0", "", 0, 1, "Infill", "Print the infill before the walls.")
 ISO_OPTION(top_solid_layers, INTEGER, "3", "", 0, 100000, "Infill",
            "Number of solid layers under every top surface.")
 ISO_OPTION(bottom_solid_layers, INTEGER, "3", "", 0, 100000, "Infill",
            "Number of solid layers over every bottom surface.")
+ISO_OPTION(top_solid_min_thickness, NUMBER, "0", "mm", 0, 1000, "Infill",
+           "Least thickness under every top surface, whatever top_solid_layers says.")
+ISO_OPTION(bottom_solid_min_thickness, NUMBER, "0", "mm", 0, 1000, "Infill",
+           "Least thickness over every bottom surface, whatever bottom_solid_layers says.")
+ISO_OPTION(
+    ensure_vertical_shell_thickness, BOOL, "0", "", 0, 1, "Infill",
+    "Add solid infill near sloping surfaces, so that the shell is as thick there as elsewhere.")
+ISO_OPTION(solid_infill_every_layers, INTEGER, "0", "", 0, 100000, "Infill",
+           "Every so many layers the whole layer is solid; 0 never.")
+ISO_OPTION(solid_infill_below_area, NUMBER, "70", "mm2", 0, 1000000, "Infill",
+           "Areas of sparse infill smaller than this become solid.")
+ISO_OPTION(bridge_angle, NUMBER, "0", "deg", 0, 360, "Infill",
+           "Direction of all bridges; 0 finds the best for each; 180 is along the X axis.")
+ISO_OPTION(bridge_flow_ratio, NUMBER, "1", "", 0.1, 2, "Infill",
+           "Factor on the amount of bridges: less pulls them taut.")
+ISO_OPTION(thick_bridges, BOOL, "1", "", 0, 1, "Infill",
+           "Bridges are round threads as thick as the nozzle, else as thick as the layer.")
+ISO_OPTION(ironing, BOOL, "0", "", 0, 1, "Infill",
+           "Pass over top surfaces again with the hot nozzle to smooth them.")
+ISO_OPTION(ironing_type, IRONING, "top", "", 0, 0, "Infill",
+           "What is ironed: all top surfaces, the topmost one only, or all solid layers.")
+ISO_OPTION(ironing_flowrate, PERCENT, "15%", "%", 0, 100, "Infill",
+           "Amount of material while ironing; in % of a full layer.")
+ISO_OPTION(ironing_spacing, NUMBER, "0.1", "mm", 0.01, 10, "Infill",
+           "Distance between the lines of ironing.")
 
 ISO_OPTION(skirts, INTEGER, "1", "", 0, 100, "Skirt",
            "Loops drawn around everything on the first layer; 0 for none.")
 ISO_OPTION(skirt_distance, NUMBER, "6", "mm", 0, 100, "Skirt", "From the skirt to the part.")
+ISO_OPTION(skirt_height, INTEGER, "1", "layers", 1, 100000, "Skirt",
+           "Layers on which the skirt is drawn.")
+ISO_OPTION(min_skirt_length, NUMBER, "0", "mm", 0, 100000, "Skirt",
+           "As many loops of skirt as take this length of filament on the first layer.")
+ISO_OPTION(draft_shield, SHIELD, "disabled", "", 0, 0, "Skirt",
+           "A skirt as a wall against draught: as high as skirt_height, or as the print.")
+ISO_OPTION(brim_width, NUMBER, "0", "mm", 0, 100, "Skirt",
+           "Width of the brim on the first layer; 0 for none.")
+ISO_OPTION(brim_type, BRIM, "outer_only", "", 0, 0, "Skirt",
+           "On which side of the outlines the brim is.")
+ISO_OPTION(brim_separation, NUMBER, "0", "mm", 0, 10, "Skirt", "Gap between the brim and the part.")
 
 ISO_OPTION(perimeter_speed, NUMBER, "60", "mm/s", 0.1, 1000, "Speed", "Speed of inner walls.")
 ISO_OPTION(external_perimeter_speed, RELATIVE, "50%", "mm/s", 0.1, 1000, "Speed",
@@ -68,11 +230,34 @@ ISO_OPTION(solid_infill_speed, RELATIVE, "20", "mm/s", 0.1, 1000, "Speed",
 ISO_OPTION(top_solid_infill_speed, RELATIVE, "15", "mm/s", 0.1, 1000, "Speed",
            "Speed of the topmost solid layers; in % of solid_infill_speed.")
 ISO_OPTION(gap_fill_speed, NUMBER, "20", "mm/s", 0, 1000, "Speed",
-           "Speed of gap fill, of which there is none yet.")
+           "Speed of gap fill; 0 leaves gaps unfilled.")
 ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0.1, 1000, "Speed",
-           "Speed of bridges, which are not told apart from other paths yet.")
+           "Speed of bridges, and of walls over air.")
 ISO_OPTION(first_layer_speed, RELATIVE, "30", "mm/s", 0.1, 1000, "Speed",
            "Speed of everything printed on the first layer; in % of the usual speed of each path.")
+ISO_OPTION(ironing_speed, NUMBER, "15", "mm/s", 0.1, 1000, "Speed", "Speed of ironing.")
+ISO_OPTION(max_print_speed, NUMBER, "80", "mm/s", 1, 1000, "Speed",
+           "Highest speed where one is given as 0, which is then chosen for an even flow.")
+ISO_OPTION(max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Speed",
+           "Most that the extruder can melt: faster beads are slowed down to it; 0 no limit.")
+ISO_OPTION(default_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration where none of the below says otherwise; 0 leaves it to the firmware.")
+ISO_OPTION(external_perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of outer walls; 0 takes default_acceleration.")
+ISO_OPTION(perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of walls; 0 takes default_acceleration.")
+ISO_OPTION(infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of sparse infill; 0 takes default_acceleration.")
+ISO_OPTION(solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of solid infill; 0 takes default_acceleration.")
+ISO_OPTION(top_solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of top surfaces; 0 takes default_acceleration.")
+ISO_OPTION(bridge_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of bridges; 0 takes default_acceleration.")
+ISO_OPTION(first_layer_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of everything on the first layer; 0 takes default_acceleration.")
+ISO_OPTION(travel_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+           "Acceleration of moves that don't print; 0 takes default_acceleration.")
 ISO_OPTION(travel_speed, NUMBER, "130", "mm/s", 1, 1000, "Speed",
            "Speed of moves that don't print.")
 ISO_OPTION(travel_speed_z, NUMBER, "0", "mm/s", 0, 1000, "Speed",
@@ -98,6 +283,10 @@ ISO_OPTION(filament_diameter, NUMBER, "1.75", "mm", 0.5, 10, "Filament",
            "Diameter of the filament.")
 ISO_OPTION(filament_density, NUMBER, "0", "g/cm3", 0, 30, "Filament",
            "Density of the filament, for the weight in footer and report; 0 unknown.")
+ISO_OPTION(filament_cost, NUMBER, "0", "per kg", 0, 1000000, "Filament",
+           "Price of the filament, for the footer; 0 unknown.")
+ISO_OPTION(filament_max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Filament",
+           "As max_volumetric_speed, for this filament: the lower one holds.")
 ISO_OPTION(extrusion_multiplier, NUMBER, "1", "", 0.1, 10, "Filament",
            "Factor on the amount of every extrusion.")
 ISO_OPTION(temperature, INTEGER, "200", "C", 0, 600, "Filament",
@@ -120,6 +309,24 @@ ISO_OPTION(retract_before_travel, NUMBER, "2", "mm", 0, 1000, "Retraction",
            "Shorter travel moves do without retraction.")
 ISO_OPTION(retract_lift, NUMBER, "0", "mm", 0, 100, "Retraction",
            "How far the nozzle is lifted while it is retracted.")
+ISO_OPTION(retract_lift_above, NUMBER, "0", "mm", 0, 10000, "Retraction",
+           "Lift from this height on only.")
+ISO_OPTION(retract_lift_below, NUMBER, "0", "mm", 0, 10000, "Retraction",
+           "Lift up to this height only; 0 no limit.")
+ISO_OPTION(retract_layer_change, BOOL, "0", "", 0, 1, "Retraction",
+           "Draw the filament back whenever a layer is done.")
+ISO_OPTION(wipe, BOOL, "0", "", 0, 1, "Retraction",
+           "Move back along the printed path while the filament is drawn back.")
+ISO_OPTION(retract_before_wipe, PERCENT, "0%", "%", 0, 100, "Retraction",
+           "Share of retract_length that is drawn back before the wipe begins.")
+ISO_OPTION(only_retract_when_crossing_perimeters, BOOL, "0", "", 0, 1, "Retraction",
+           "No retraction on travel moves that stay inside the part.")
+ISO_OPTION(avoid_crossing_perimeters, BOOL, "0", "", 0, 1, "Retraction",
+           "Lead travel moves around walls instead of across them.")
+ISO_OPTION(avoid_crossing_perimeters_max_detour, RELATIVE, "0", "mm", 0, 10000, "Retraction",
+           "Longest detour around walls; in % of the straight way; 0 no limit.")
+ISO_OPTION(use_firmware_retraction, BOOL, "0", "", 0, 1, "Retraction",
+           "Leave retraction to the firmware (G10 and G11).")
 
 ISO_OPTION(cooling, BOOL, "1", "", 0, 1, "Cooling",
            "Slow down and blow by the time a layer takes, with the options below.")
@@ -136,6 +343,10 @@ ISO_OPTION(max_fan_speed, INTEGER, "100", "%", 0, 100, "Cooling",
            "Speed of the fan on layers that are slowed down.")
 ISO_OPTION(disable_fan_first_layers, INTEGER, "3", "", 0, 1000, "Cooling",
            "On that many layers the fan stays off.")
+ISO_OPTION(full_fan_speed_layer, INTEGER, "0", "", 0, 1000, "Cooling",
+           "From disable_fan_first_layers to this layer the fan speeds up evenly; 0 at once.")
+ISO_OPTION(bridge_fan_speed, INTEGER, "100", "%", 0, 100, "Cooling",
+           "Speed of the fan on bridges and on walls over air.")
 
 ISO_OPTION(nozzle_diameter, NUMBER, "0.4", "mm", 0.05, 5, "Printer", "Diameter of the nozzle.")
 ISO_OPTION(bed_shape, POINTS, "0x0,200x0,200x200,0x200", "mm", -1600, 1600, "Printer",
@@ -147,6 +358,11 @@ ISO_OPTION(center, PLACE, "", "mm", -1600, 1600, "Printer",
 ISO_OPTION(gcode_flavor, FLAVOUR, "marlin2", "", 0, 0, "Printer", "Dialect of the G-code.")
 ISO_OPTION(use_relative_e_distances, BOOL, "1", "", 0, 1, "Printer",
            "Extrusion counts from the move before (M83), not from the start (M82).")
+ISO_OPTION(use_volumetric_e, BOOL, "0", "", 0, 1, "Printer",
+           "E counts mm3 instead of mm of filament.")
+ISO_OPTION(
+    machine_limits_usage, LIMITS, "time_estimate_only", "", 0, 0, "Printer",
+    "What the limits below are for: told to the firmware at the start, for the estimate of time, or for nothing.")
 ISO_OPTION(machine_max_acceleration_extruding, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
            "The firmware's acceleration of printing moves, for the estimate of time.")
 ISO_OPTION(machine_max_acceleration_travel, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
@@ -155,6 +371,28 @@ ISO_OPTION(machine_max_acceleration_retracting, NUMBER, "1000", "mm/s2", 1, 1000
            "The firmware's acceleration of retractions, for the estimate of time.")
 ISO_OPTION(machine_max_feedrate_z, NUMBER, "12", "mm/s", 0.1, 1000, "Printer",
            "The firmware's highest speed of the Z axis, for the estimate of time.")
+ISO_OPTION(machine_max_feedrate_x, NUMBER, "500", "mm/s", 0.1, 10000, "Printer",
+           "The firmware's highest speed of the X axis.")
+ISO_OPTION(machine_max_feedrate_y, NUMBER, "500", "mm/s", 0.1, 10000, "Printer",
+           "The firmware's highest speed of the Y axis.")
+ISO_OPTION(machine_max_feedrate_e, NUMBER, "120", "mm/s", 0.1, 10000, "Printer",
+           "The firmware's highest speed of the E axis.")
+ISO_OPTION(machine_max_acceleration_x, NUMBER, "9000", "mm/s2", 1, 1000000, "Printer",
+           "The firmware's highest acceleration of the X axis.")
+ISO_OPTION(machine_max_acceleration_y, NUMBER, "9000", "mm/s2", 1, 1000000, "Printer",
+           "The firmware's highest acceleration of the Y axis.")
+ISO_OPTION(machine_max_acceleration_z, NUMBER, "500", "mm/s2", 1, 1000000, "Printer",
+           "The firmware's highest acceleration of the Z axis.")
+ISO_OPTION(machine_max_acceleration_e, NUMBER, "10000", "mm/s2", 1, 1000000, "Printer",
+           "The firmware's highest acceleration of the E axis.")
+ISO_OPTION(machine_max_jerk_x, NUMBER, "10", "mm/s", 0, 1000, "Printer",
+           "The firmware's jerk of the X axis.")
+ISO_OPTION(machine_max_jerk_y, NUMBER, "10", "mm/s", 0, 1000, "Printer",
+           "The firmware's jerk of the Y axis.")
+ISO_OPTION(machine_max_jerk_z, NUMBER, "0.2", "mm/s", 0, 1000, "Printer",
+           "The firmware's jerk of the Z axis.")
+ISO_OPTION(machine_max_jerk_e, NUMBER, "2.5", "mm/s", 0, 1000, "Printer",
+           "The firmware's jerk of the E axis.")
 ISO_OPTION(machine_max_junction_deviation, NUMBER, "0.013", "mm", 0.001, 1, "Printer",
            "The firmware's junction deviation, for the estimate of time.")
 
@@ -175,6 +413,29 @@ ISO_OPTION(
     layer_gcode, TEXT, "", "", 0, 0, "G-code",
     "What comes at every layer, once the nozzle is at its height. [layer_num] counts from 0, "
     "[layer_z] is the layer's top in mm; [key] stands for an option's value.")
+ISO_OPTION(before_layer_gcode, TEXT, "", "", 0, 0, "G-code",
+           "What comes before the nozzle rises to a layer; as layer_gcode.")
+ISO_OPTION(start_filament_gcode, TEXT, "", "", 0, 0, "G-code",
+           "What comes after start_gcode, for the filament.")
+ISO_OPTION(end_filament_gcode, TEXT, "", "", 0, 0, "G-code",
+           "What comes before end_gcode, for the filament.")
+ISO_OPTION(between_objects_gcode, TEXT, "", "", 0, 0, "G-code",
+           "What comes between objects that are printed one by one.")
+ISO_OPTION(colorprint_heights, NUMBERS, "", "mm", 0, 10000, "G-code",
+           "Heights at which the filament is changed by color_change_gcode.")
+ISO_OPTION(
+    events, TEXT, "", "", 0, 0, "G-code",
+    "What happens at which heights, one a line or split by ; as 5.2:color, 8:pause, 10:template, or 12.4:any G-code.")
+ISO_OPTION(color_change_gcode, TEXT, "M600", "", 0, 0, "G-code", "What changes the filament.")
+ISO_OPTION(pause_print_gcode, TEXT, "M601", "", 0, 0, "G-code", "What pauses the print.")
+ISO_OPTION(template_custom_gcode, TEXT, "", "", 0, 0, "G-code",
+           "What an event named template does.")
+ISO_OPTION(gcode_comments, BOOL, "0", "", 0, 1, "G-code", "Say behind every move what it is for.")
+ISO_OPTION(
+    gcode_label_objects, LABELS, "disabled", "", 0, 0, "G-code",
+    "Mark which object is being printed: in comments for OctoPrint, or by commands of the firmware, which can then leave one out.")
+ISO_OPTION(arc_fitting, ARCS, "disabled", "", 0, 0, "G-code",
+           "Draw round paths by arcs, G2 and G3, within gcode_resolution.")
 ISO_OPTION(remaining_times, BOOL, "1", "", 0, 1, "G-code",
            "Tell the printer how much is done and how long it will take still (M73).")
 

@@ -34,8 +34,6 @@ size_t iso_value_size(iso_option_kind kind) {
     case ISO_VALUE_BOOL:
         return sizeof(bool);
     case ISO_VALUE_INTEGER:
-    case ISO_VALUE_PATTERN:
-    case ISO_VALUE_FLAVOUR:
         return sizeof(int32_t);
     case ISO_VALUE_NUMBER:
     case ISO_VALUE_PERCENT:
@@ -50,8 +48,9 @@ size_t iso_value_size(iso_option_kind kind) {
         return sizeof(iso_points);
     case ISO_VALUE_NUMBERS:
         return sizeof(iso_numbers);
+    default: /* a word */
+        return sizeof(int32_t);
     }
-    return 0;
 }
 
 static const char *skip_spaces(const char *text) {
@@ -328,9 +327,6 @@ const char *iso_value_parse(iso_value *value, const iso_option_info *info, const
         return parse_percent(&value->number, info, text);
     case ISO_VALUE_RELATIVE:
         return parse_relative(&value->relative, info, text);
-    case ISO_VALUE_PATTERN:
-    case ISO_VALUE_FLAVOUR:
-        return parse_word(&value->integer, info->kind, text);
     case ISO_VALUE_TEXT:
         return parse_text(value->text, text);
     case ISO_VALUE_PLACE:
@@ -339,8 +335,9 @@ const char *iso_value_parse(iso_value *value, const iso_option_info *info, const
         return parse_points(&value->points, info, text);
     case ISO_VALUE_NUMBERS:
         return parse_numbers(&value->numbers, info, text);
+    default:
+        return parse_word(&value->integer, info->kind, text);
     }
-    return "has no kind";
 }
 
 /* ---- writing ---- */
@@ -429,10 +426,6 @@ static void put_value(writer *out, const void *value, iso_option_kind kind) {
     case ISO_VALUE_RELATIVE:
         put_relative(out, value);
         break;
-    case ISO_VALUE_PATTERN:
-    case ISO_VALUE_FLAVOUR:
-        put_word(out, kind, *(const int32_t *)value);
-        break;
     case ISO_VALUE_TEXT:
         put_escaped(out, value);
         break;
@@ -446,6 +439,8 @@ static void put_value(writer *out, const void *value, iso_option_kind kind) {
     case ISO_VALUE_NUMBERS:
         put_numbers(out, value);
         break;
+    default:
+        put_word(out, kind, *(const int32_t *)value);
     }
 }
 

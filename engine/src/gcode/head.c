@@ -223,14 +223,15 @@ static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point 
 }
 
 void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
-                   const double *length, int32_t feed) {
+                   const double *length, const iso_layer_pace *pace) {
     int32_t segments = path->closed ? path->count : path->count - 1;
     if (path->count < 2)
         return;
     travel(head, vertex[0].at, head->layer_z + vertex[0].z);
-    say_role(head, path->role);
     for (int32_t i = 0; i < segments; i++) {
         const iso_path_vertex *to = &vertex[i + 1 < path->count ? i + 1 : 0];
-        draw_segment(head, &vertex[i], to->at, head->layer_z + to->z, length[i], feed);
+        say_role(head, vertex[i].role);
+        draw_segment(head, &vertex[i], to->at, head->layer_z + to->z, length[i],
+                     pace->feed[iso_speed_slot(vertex[i].role, path->speed_class)]);
     }
 }

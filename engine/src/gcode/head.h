@@ -6,6 +6,7 @@
 #include <isoslice/gcode.h>
 #include <isoslice/path.h>
 
+#include "gcode/cooling.h"
 #include "gcode/lines.h"
 #include "gcode/planner.h"
 
@@ -49,10 +50,10 @@ void iso_head_reach_layer(iso_head *head);
 
 void iso_head_retract(iso_head *head);
 
-/* To the path's beginning and along it, at `feed` mm/min. length[i] in units from vertex i to the
- * next one. Nothing happens on paths of less than two vertices. */
+/* To the path's beginning and along it, at the feeds of the layer's pace. length[i] in units from
+ * vertex i to the next one. Nothing happens on paths of less than two vertices. */
 void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
-                   const double *length, int32_t feed);
+                   const double *length, const iso_layer_pace *pace);
 
 /* s to pull the filament back and to bring it forth again, acceleration left out. */
 double iso_head_retraction_time(const iso_head *head);

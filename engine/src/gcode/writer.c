@@ -66,10 +66,10 @@ static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const i
     if (w->clock > w->next_mark)
         ISO_TRY(mark_progress(w));
     set_fan(w, pace->fan);
-    int32_t feed = pace->feed[iso_speed_slot(path->role, path->speed_class)];
     double drawn_before = w->head.bead_mm;
-    iso_head_draw(&w->head, path, paths->vertex + path->first, w->length + path->first, feed);
-    w->clock += (w->head.bead_mm - drawn_before) * 60 / feed;
+    iso_head_draw(&w->head, path, paths->vertex + path->first, w->length + path->first, pace);
+    w->clock += (w->head.bead_mm - drawn_before) * 60 /
+                pace->feed[iso_speed_slot(path->role, path->speed_class)];
     return ISO_OK;
 }
 
@@ -88,21 +88,23 @@ static void measure(iso_layer_work *work, iso_gcode_writer *w, const iso_paths *
     for (int32_t i = 0; i < paths->count; i++) {
         const iso_path *path = &paths->path[i];
         const iso_path_vertex *vertex = paths->vertex + path->first;
-        double *length = w->length + path->first, sum = 0;
+        double *length = w->length + path->first;
         if (path->count < 2)
             continue;
-        for (int32_t k = 0; k + 1 < path->count; k++)
-            sum += length[k] = length_between(&vertex[k], &vertex[k + 1]);
         int32_t last = path->count - 1;
+        for (int32_t k = 0; k < last; k++)
+            length[k] = length_between(&vertex[k], &vertex[k + 1]);
         if (path->closed)
-            sum += length[last] = length_between(&vertex[last], &vertex[0]);
+            length[last] = length_between(&vertex[last], &vertex[0]);
+        for (int32_t k = 0; k < last + path->closed; k++)
+            work->length[iso_speed_slot(vertex[k].role, path->speed_class)] +=
+                length[k] / ISO_UNITS_PER_MM;
         if (end) {
             double units = length_between(end, &vertex[0]);
             travel_units += units;
             retractions += units > w->options.retract_before_travel * ISO_UNITS_PER_MM;
         }
         end = &vertex[path->closed ? 0 : last];
-        work->length[iso_speed_slot(path->role, path->speed_class)] += sum / ISO_UNITS_PER_MM;
     }
     work->other_time = travel_units / ISO_UNITS_PER_MM * 60 / w->head.travel_feed +
                        retractions * iso_head_retraction_time(&w->head);
@@ -114,6 +116,10 @@ static iso_status check_layer(const iso_gcode_layer_info *layer) {
         if (paths->path[i].role >= ISO_ROLE_COUNT)
             return iso_fail(ISO_BUG, "layer %d, path %d: there is no role %d", layer->index, i,
                             paths->path[i].role);
+    for (int32_t v = 0; v < paths->vertex_count; v++)
+        if ((uint32_t)paths->vertex[v].role >= ISO_ROLE_COUNT)
+            return iso_fail(ISO_BUG, "layer %d, vertex %d: there is no role %d", layer->index, v,
+                            paths->vertex[v].role);
     return ISO_OK;
 }
 

@@ -115,6 +115,7 @@ static void copy_reversed(iso_path_vertex *to, const iso_path_vertex *from, int3
         int32_t bead = i + 1 < count ? count - 2 - i : count - 1;
         to[i].width = from[bead].width;
         to[i].area = from[bead].area;
+        to[i].role = from[bead].role;
     }
 }
 

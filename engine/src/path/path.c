@@ -46,7 +46,8 @@ iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point
     path->count = count;
     iso_path_vertex *vertex = paths->vertex + path->first;
     for (int32_t i = 0; i < count; i++)
-        vertex[i] = (iso_path_vertex){.at = point[i], .width = width, .area = area};
+        vertex[i] =
+            (iso_path_vertex){.at = point[i], .width = width, .area = area, .role = like->role};
     paths->vertex_count = (int32_t)vertices;
     return ISO_OK;
 }
