@@ -1,34 +1,9 @@
 /* What the options of layers, walls, infill, speeds and widths do to the paths. */
-#ifndef TESTS_JOB_OPTION_PATHS_H
-#define TESTS_JOB_OPTION_PATHS_H
 
-#include "checks.h"
-
-/* The print with the base settings, and with the option changed as well. */
-typedef struct change {
-    const print *a, *b;
-} change;
+#include "option_row.h"
 
 static int role_of_walls(const print_move *m) {
     return m->role == ISO_ROLE_EXTERNAL_PERIMETER || m->role == ISO_ROLE_PERIMETER;
-}
-
-/* The same moves one by one, E, F and fan aside? */
-static int same_places(const print *a, const print *b) {
-    if (!CHECK_EQUAL(a->move_count, b->move_count))
-        return 0;
-    for (int32_t i = 0; i < a->move_count; i++)
-        if (a->move[i].bx != b->move[i].bx || a->move[i].by != b->move[i].by ||
-            a->move[i].bz != b->move[i].bz)
-            return CHECK(!"the moves are the same");
-    return 1;
-}
-
-static int same_filament(const print *a, const print *b) {
-    for (int32_t i = 0; i < a->move_count; i++)
-        if (fabs(a->move[i].e - b->move[i].e) > 2e-5)
-            return CHECK(!"the filament is the same");
-    return 1;
 }
 
 /* ---- layers ---- */
@@ -359,4 +334,52 @@ static void top_infill_extrusion_width(const change *c) {
     check_fitted(c->b, SOLID, 0.45);
 }
 
-#endif
+static void nozzle_diameter(const change *c) {
+    check_width(c->b, ISO_ROLE_PERIMETER, 0, 0.6 * 1.125);
+    check_width(c->b, SPARSE, 0, 0.6 * 1.125);
+    check_fitted(c->b, ISO_ROLE_TOP_SOLID_INFILL, 0.6);
+}
+
+/* ---- the rows ---- */
+
+const option_row option_rows_print[] = {
+    {make_block, "layer_height", "0.2", "", layer_height},
+    {make_block, "first_layer_height", "50%", "", first_layer_height},
+    {make_block, "layer_heights", "0.3,0.2,0.1", "", layer_heights},
+    {make_part, "gcode_resolution", "0.1", "", gcode_resolution},
+    {make_block, "z_offset", "0.25", "", z_offset},
+    {make_block, "perimeters", "5", "", perimeters},
+    {make_block, "external_perimeters_first", "1", "", external_perimeters_first},
+    {make_block, "fill_density", "40%", "perimeters = 1", fill_density},
+    {make_block, "fill_pattern", "grid", "perimeters = 1\nfill_density = 30%", fill_pattern},
+    {make_block, "fill_angle", "20", "perimeters = 1\nfill_density = 30%", fill_angle},
+    {make_block, "infill_overlap", "0.3", "fill_angle = 0\nbottom_solid_layers = 4",
+     infill_overlap},
+    {make_block, "top_solid_layers", "2", "", top_solid_layers},
+    {make_block, "bottom_solid_layers", "1", "", bottom_solid_layers},
+    {make_block, "skirts", "4", "", skirts},
+    {make_block, "skirt_distance", "2.5", "", skirt_distance},
+    {make_block, "perimeter_speed", "44", STEADY, perimeter_speed},
+    {make_block, "external_perimeter_speed", "25", STEADY, external_perimeter_speed},
+    {make_small, "small_perimeter_speed", "40%", STEADY, small_perimeter_speed},
+    {make_block, "infill_speed", "70", STEADY, infill_speed},
+    {make_block, "solid_infill_speed", "50%", STEADY "top_solid_infill_speed = 15\n",
+     solid_infill_speed},
+    {make_block, "top_solid_infill_speed", "60%", STEADY, top_solid_infill_speed},
+    {make_block, "gap_fill_speed", "33", STEADY, no_path_of_it},
+    {make_block, "bridge_speed", "33", STEADY, no_path_of_it},
+    {make_block, "first_layer_speed", "22", STEADY, first_layer_speed},
+    {make_block, "first_layer_speed", "50%", STEADY, first_layer_speed_in_percent},
+    {make_block, "travel_speed", "99", STEADY, travel_speed},
+    {make_block, "travel_speed_z", "9", STEADY, travel_speed_z},
+    {make_block, "extrusion_width", "180%", "", extrusion_width},
+    {make_block, "first_layer_extrusion_width", "0.5", "", first_layer_extrusion_width},
+    {make_block, "perimeter_extrusion_width", "200%", "", perimeter_extrusion_width},
+    {make_block, "external_perimeter_extrusion_width", "0.4", "",
+     external_perimeter_extrusion_width},
+    {make_block, "infill_extrusion_width", "0.6", "", infill_extrusion_width},
+    {make_block, "solid_infill_extrusion_width", "0.6", "", solid_infill_extrusion_width},
+    {make_block, "top_infill_extrusion_width", "0.6", "", top_infill_extrusion_width},
+    {make_block, "nozzle_diameter", "0.6", "first_layer_extrusion_width = 0", nozzle_diameter},
+    {0},
+};
