@@ -9,6 +9,7 @@
 #include <isoslice/job.h>
 #include <isoslice/link.h>
 #include <isoslice/mesh.h>
+#include <isoslice/object.h>
 #include <isoslice/path.h>
 #include <isoslice/planar.h>
 #include <isoslice/preview.h>

@@ -28,6 +28,19 @@ ISO_API iso_status iso_levels_uniform(iso_levels *levels, double object_height, 
  * middle is not below `object_height` are left out. ISO_USAGE: a height that is not above 0. */
 ISO_API iso_status iso_levels_from_heights(iso_levels *levels, const double *height, int32_t count,
                                            double object_height) ISO_MUST_CHECK;
+typedef struct iso_adaptive_options {
+    double first;    /* mm, thickness of the first layer */
+    double min, max; /* mm, of every other one */
+    double cusp;     /* mm that a step may stand off the surface; min wins over it */
+} iso_adaptive_options;
+
+/* Layers as thick as the slope of the surface allows, `cusp` its largest distance from their edges
+ * (Dolenc and Makela, Slicing procedures for layered manufacturing techniques, 1994). Thickness
+ * changes from layer to layer by a fifth of the way between min and max at most, but that a layer
+ * ends at a flat top where one is near. `mesh` are the models of one object, set down at z = 0.
+ * ISO_USAGE: a number that isn't above 0, min above max. */
+ISO_API iso_status iso_levels_adaptive(iso_levels *levels, const iso_mesh *mesh, int32_t count,
+                                       const iso_adaptive_options *options) ISO_MUST_CHECK;
 ISO_API void iso_levels_free(iso_levels *levels);
 
 /* A coloured link in canonical order: contours by colour (the level's index), within a colour by
