@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <isoslice/fill.h>
 #include <isoslice/gcode.h>
 #include <isoslice/geometry.h>
 #include <isoslice/path.h>
@@ -43,24 +44,6 @@ typedef struct iso_numbers {
     int32_t count;
     double value[ISO_NUMBERS_MAX];
 } iso_numbers;
-
-typedef enum iso_fill_pattern {
-    ISO_PATTERN_RECTILINEAR,
-    ISO_PATTERN_ALIGNED,
-    ISO_PATTERN_MONOTONIC,
-    ISO_PATTERN_GRID,
-    ISO_PATTERN_TRIANGLES,
-    ISO_PATTERN_STARS,
-    ISO_PATTERN_CUBIC,
-    ISO_PATTERN_LINE,
-    ISO_PATTERN_CONCENTRIC,
-    ISO_PATTERN_HONEYCOMB,
-    ISO_PATTERN_HONEYCOMB_3D,
-    ISO_PATTERN_GYROID,
-    ISO_PATTERN_HILBERT,
-    ISO_PATTERN_ARCHIMEDEAN,
-    ISO_PATTERN_OCTAGRAM
-} iso_fill_pattern;
 
 typedef enum iso_seam {
     ISO_SEAM_RANDOM,

@@ -11,6 +11,7 @@ iso_fill_options iso_fill_defaults(iso_bead bead, double density) {
     return (iso_fill_options){
         .spacing = spacing,
         .fit = solid,
+        .density = solid ? 1 : density,
         .width = bead.width,
         .area = bead.area,
         .link_max = link < ISO_COORDINATE_MAX ? (int32_t)link : ISO_COORDINATE_MAX,
