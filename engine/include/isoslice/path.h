@@ -36,6 +36,12 @@ typedef struct iso_path_vertex {
     int32_t role;  /* iso_role; the path's own but for pieces of it, as where a wall hangs over */
 } iso_path_vertex;
 
+/* Is the filament to be drawn back before the nozzle travels to a path? */
+typedef enum iso_retraction {
+    ISO_RETRACT_IF_LONG, /* if the way is longer than retract_before_travel */
+    ISO_RETRACT_NOT      /* no: nothing that drips on this way is ever seen */
+} iso_retraction;
+
 typedef struct iso_path {
     int32_t first, count; /* vertices; a closed path does not repeat its first vertex */
     uint8_t role;         /* iso_role of the path as a whole, by which it is ordered */
@@ -45,6 +51,10 @@ typedef struct iso_path {
     int32_t object;
     int32_t group; /* paths of one group are printed together; groups in any order (an island) */
     int32_t rank;  /* within a group lower ranks first (walls before infill) */
+
+    /* Of ordered layers only: how the nozzle comes here. */
+    uint8_t retract;                    /* iso_retraction */
+    int32_t travel_first, travel_count; /* points of `travel` to pass on the way */
 } iso_path;
 
 /* The paths of one layer. Zero-initialise; keeps its capacity; iso_paths_free at the end. */
@@ -53,6 +63,9 @@ typedef struct iso_paths {
     iso_path *path;
     iso_path_vertex *vertex;
     int64_t path_capacity, vertex_capacity;
+    int32_t travel_count; /* points that travels turn at */
+    iso_point *travel;
+    int64_t travel_capacity;
 } iso_paths;
 
 ISO_API void iso_paths_free(iso_paths *paths);

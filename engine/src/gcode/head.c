@@ -152,25 +152,51 @@ static double mm_between(const iso_head *head, int32_t x, int32_t y) {
     return sqrt(dx * dx + dy * dy) / 1000;
 }
 
+static void move_flat(iso_head *head, int32_t x, int32_t y) {
+    char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1 X");
+    p = iso_put_thousandths(p, x);
+    p = ISO_PUT(p, " Y");
+    p = iso_put_thousandths(p, y);
+    p = put_feed(head, p, head->travel_feed);
+    iso_lines_accept(head->lines, iso_put_newline(p));
+    if (head->x != UNKNOWN)
+        plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
+    head->x = x;
+    head->y = y;
+}
+
+static double mm_of_way(const iso_point *way, int32_t count) {
+    double sum = 0;
+    for (int32_t i = 0; i + 1 < count; i++) {
+        double dx = (double)way[i + 1].x - way[i].x, dy = (double)way[i + 1].y - way[i].y;
+        sum += sqrt(dx * dx + dy * dy) / ISO_UNITS_PER_MM;
+    }
+    return sum;
+}
+
+static int is_long(const iso_head *head, const iso_path *path, const iso_point *way, iso_point to) {
+    double limit = head->options->retract_before_travel;
+    if (path->travel_count == 0)
+        return mm_between(head, to_micrometres(to.x), to_micrometres(to.y)) > limit;
+    iso_point last[2] = {way[path->travel_count - 1], to};
+    return mm_between(head, to_micrometres(way->x), to_micrometres(way->y)) +
+               mm_of_way(way, path->travel_count) + mm_of_way(last, 2) >
+           limit;
+}
+
 /* To the beginning of a path, filament ready. */
-static void travel(iso_head *head, iso_point to, int32_t z) {
+static void travel(iso_head *head, const iso_path *path, const iso_point *way, iso_point to,
+                   int32_t z) {
     int32_t x = to_micrometres(to.x), y = to_micrometres(to.y);
     int known = head->x != UNKNOWN, away = x != head->x || y != head->y;
-    if (!known || (away && mm_between(head, x, y) > head->options->retract_before_travel))
+    if (!known || (away && path->retract != ISO_RETRACT_NOT && is_long(head, path, way, to)))
         iso_head_retract(head);
     if (away) {
         int32_t low = z > head->layer_z ? z : head->layer_z;
         move_z(head, head->retracted ? low + head->lift : low);
-        char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1 X");
-        p = iso_put_thousandths(p, x);
-        p = ISO_PUT(p, " Y");
-        p = iso_put_thousandths(p, y);
-        p = put_feed(head, p, head->travel_feed);
-        iso_lines_accept(head->lines, iso_put_newline(p));
-        if (known)
-            plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
-        head->x = x;
-        head->y = y;
+        for (int32_t i = 0; known && i < path->travel_count; i++)
+            move_flat(head, to_micrometres(way[i].x), to_micrometres(way[i].y));
+        move_flat(head, x, y);
     }
     move_z(head, z);
     deretract(head);
@@ -222,12 +248,14 @@ static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point 
     head->z = z;
 }
 
-void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
+void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
                    const double *length, const iso_layer_pace *pace) {
+    const iso_path_vertex *vertex = paths->vertex + path->first;
+    const iso_point *way = path->travel_count > 0 ? paths->travel + path->travel_first : NULL;
     int32_t segments = path->closed ? path->count : path->count - 1;
     if (path->count < 2)
         return;
-    travel(head, vertex[0].at, head->layer_z + vertex[0].z);
+    travel(head, path, way, vertex[0].at, head->layer_z + vertex[0].z);
     for (int32_t i = 0; i < segments; i++) {
         const iso_path_vertex *to = &vertex[i + 1 < path->count ? i + 1 : 0];
         say_role(head, vertex[i].role);

@@ -50,9 +50,10 @@ void iso_head_reach_layer(iso_head *head);
 
 void iso_head_retract(iso_head *head);
 
-/* To the path's beginning and along it, at the feeds of the layer's pace. length[i] in units from
- * vertex i to the next one. Nothing happens on paths of less than two vertices. */
-void iso_head_draw(iso_head *head, const iso_path *path, const iso_path_vertex *vertex,
+/* To the path's beginning, by way of the points where its travel turns, and along it, each bead at
+ * its role's speed. length[i] in units from the path's vertex i to the next one. Nothing happens on
+ * paths of less than two vertices. */
+void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
                    const double *length, const iso_layer_pace *pace);
 
 /* s to pull the filament back and to bring it forth again, acceleration left out. */

@@ -67,7 +67,7 @@ static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const i
         ISO_TRY(mark_progress(w));
     set_fan(w, pace->fan);
     double drawn_before = w->head.bead_mm;
-    iso_head_draw(&w->head, path, paths->vertex + path->first, w->length + path->first, pace);
+    iso_head_draw(&w->head, paths, path, w->length + path->first, pace);
     w->clock += (w->head.bead_mm - drawn_before) * 60 /
                 pace->feed[iso_speed_slot(path->role, path->speed_class)];
     return ISO_OK;
@@ -77,6 +77,20 @@ static double length_between(const iso_path_vertex *a, const iso_path_vertex *b)
     double dx = (double)b->at.x - a->at.x, dy = (double)b->at.y - a->at.y;
     double dz = (double)b->z - a->z;
     return sqrt(dx * dx + dy * dy + dz * dz); /* of an integer below 2^53: rounded once */
+}
+
+/* From `end` by way of the points where the travel turns. */
+static double length_of_travel(const iso_paths *paths, const iso_path *path,
+                               const iso_path_vertex *end) {
+    iso_path_vertex at = *end;
+    double sum = 0;
+    for (int32_t i = 0; i < path->travel_count; i++) {
+        iso_path_vertex turn = at;
+        turn.at = paths->travel[path->travel_first + i];
+        sum += length_between(&at, &turn);
+        at = turn;
+    }
+    return sum + length_between(&at, &paths->vertex[path->first]);
 }
 
 /* Every segment's length, and what the layer asks for by speed. */
@@ -100,9 +114,10 @@ static void measure(iso_layer_work *work, iso_gcode_writer *w, const iso_paths *
             work->length[iso_speed_slot(vertex[k].role, path->speed_class)] +=
                 length[k] / ISO_UNITS_PER_MM;
         if (end) {
-            double units = length_between(end, &vertex[0]);
+            double units = length_of_travel(paths, path, end);
             travel_units += units;
-            retractions += units > w->options.retract_before_travel * ISO_UNITS_PER_MM;
+            retractions += path->retract != ISO_RETRACT_NOT &&
+                           units > w->options.retract_before_travel * ISO_UNITS_PER_MM;
         }
         end = &vertex[path->closed ? 0 : last];
     }

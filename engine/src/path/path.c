@@ -26,11 +26,12 @@ const char *iso_role_name(iso_role role) {
 void iso_paths_free(iso_paths *paths) {
     iso_release(paths->path);
     iso_release(paths->vertex);
+    iso_release(paths->travel);
     *paths = (iso_paths){0};
 }
 
 void iso_paths_clear(iso_paths *paths) {
-    paths->count = paths->vertex_count = 0;
+    paths->count = paths->vertex_count = paths->travel_count = 0;
 }
 
 iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point *point,
