@@ -111,6 +111,16 @@ static inline bool iso_option_is_word(iso_option_kind kind) {
     return kind >= ISO_VALUE_PATTERN;
 }
 
+#define ISO_FOREIGN_SIZE 65536
+
+/* What files say for keys that are no options of ours, for the macros of G-code texts: each a key
+ * and its value as the file has it, both ended by a 0, one after the other. What doesn't fit is not
+ * kept. */
+typedef struct iso_foreign {
+    int32_t used; /* bytes */
+    char text[ISO_FOREIGN_SIZE];
+} iso_foreign;
+
 typedef struct iso_options {
 #define ISO_FIELD_BOOL(key) bool key;
 #define ISO_FIELD_INTEGER(key) int32_t key;
@@ -136,6 +146,7 @@ typedef struct iso_options {
 #define ISO_OPTION(key, kind, initial, unit, min, max, category, help) ISO_FIELD_##kind(key)
 #include <isoslice/options.inl>
 #undef ISO_OPTION
+    iso_foreign foreign;
 } iso_options;
 
 /* A row of the table. All texts are constants. */
