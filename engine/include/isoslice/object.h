@@ -16,14 +16,12 @@
 
 /* ---- one mesh, or several that keep their places to each other ---- */
 
-typedef enum iso_axis { ISO_AXIS_X, ISO_AXIS_Y, ISO_AXIS_Z } iso_axis;
-
 /* What is done to a model, in this order. Zero-initialised it does nothing. */
 typedef struct iso_transform {
     bool inches;      /* numbers are inches: 25.4 times as large */
     double scale;     /* factor; 0 counts as 1 */
     iso_vec3 fit;     /* mm; the same factor on all axes, so that the box just fits; 0: any size */
-    bool mirror[3];   /* by iso_axis; triangles are turned along */
+    bool mirror[3];   /* along x, y, z; triangles are turned along */
     double rotate[3]; /* degrees counter-clockwise about X, then Y, then Z */
 } iso_transform;
 
