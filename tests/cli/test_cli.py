@@ -216,8 +216,8 @@ class Cli(unittest.TestCase):
         self.fails(6, "--layer-height: layer_height = 7 is out of range; allowed: 0.01 to 5 mm",
                    "part.stl", "--layer-height", "7")
         self.fails(6, "-s: there is no option wibble", "part.stl", "-s", "wibble=1")
-        self.fails(6, "--fill-pattern: fill_pattern = stars is not known; allowed: rectilinear, grid",
-                   "part.stl", "--fill-pattern", "stars")
+        self.fails(6, "--seam-position: seam_position = front is not known; allowed: random, nearest, aligned, rear",
+                   "part.stl", "--seam-position", "front")
         self.fails(6, "nozzle_diameter = 0.4", "part.stl", "--layer-height", "0.5")
         self.write("bad.ini", "perimeters = 2\nlayer_height = x\n")
         self.fails(6, "missing.ini", "part.stl", "-c", "missing.ini")
@@ -250,20 +250,20 @@ class Cli(unittest.TestCase):
                           "bed_shape": "0x0,150x0,150x150,0x150"}, used)
 
     def test_settings_of_others_are_one_warning_and_strict_refuses_them(self):
-        self.write("prusa.ini", "layer_height = 0.2\nwipe = 1\nspiral_vase = 0\nfill_pattern = stars\n")
+        self.write("prusa.ini", "layer_height = 0.2\nraft_layers = 1\nnotes = 0\nfill_pattern = lightning\n")
         done = self.run_it("part.stl", "-c", "prusa.ini", "--report", "report.json")
         lines = done.stderr.decode().splitlines()
         self.assertEqual(2, len(lines), lines)
-        self.assertIn("2 settings are not isoslice's and were left out: wipe, spiral_vase", lines[0])
-        self.assertIn("fill_pattern = stars", lines[1])
+        self.assertIn("2 settings are not isoslice's and were left out: raft_layers, notes", lines[0])
+        self.assertIn("fill_pattern = lightning", lines[1])
         report = json.loads((self.at / "report.json").read_text())
         self.assertEqual(["unknown-setting", "setting-not-followed"],
                          [w["code"] for w in report["warnings"]])
         done = self.run_it("part.stl", "-c", "prusa.ini", "--fill-pattern", "grid")
         self.assertNotIn(b"fill_pattern", done.stderr)
-        self.fails(6, "wipe, spiral_vase", "part.stl", "-c", "prusa.ini", "--strict", "-o", "x.gcode")
+        self.fails(6, "raft_layers, notes", "part.stl", "-c", "prusa.ini", "--strict", "-o", "x.gcode")
         done = self.run_it("contours", "part.stl", "-o", "part.svg", "-c", "prusa.ini")
-        self.assertIn(b"wipe, spiral_vase", done.stderr)
+        self.assertIn(b"raft_layers, notes", done.stderr)
 
     def test_settings_come_from_a_pipe_too(self):
         for text in (b"perimeters = 1\n", b"; perimeters = 1\n", b"perimeters = 1\n" + b"#" * 100000):

@@ -131,9 +131,11 @@ static void test_messages_say_where_what_and_what_is_allowed(void) {
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_set(&options, "layer_height", "7", "--layer-height"));
     CHECK(strcmp(iso_error_message(),
                  "--layer-height: layer_height = 7 is out of range; allowed: 0.01 to 5 mm") == 0);
-    CHECK_STATUS(ISO_BAD_CONFIG, iso_options_set(&options, "fill_pattern", "stars", "-s"));
-    CHECK(strcmp(iso_error_message(),
-                 "-s: fill_pattern = stars is not known; allowed: rectilinear, grid") == 0);
+    CHECK_STATUS(ISO_BAD_CONFIG, iso_options_set(&options, "seam_position", "front", "-s"));
+    CHECK(
+        strcmp(iso_error_message(),
+               "-s: seam_position = front is not known; allowed: random, nearest, aligned, rear") ==
+        0);
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_set(&options, "layer-hieght", "1", "-s"));
     CHECK(strstr(iso_error_message(), "is it layer_height?") != NULL);
 }
