@@ -196,11 +196,18 @@ static iso_status widen_task(void *payload, int64_t number, int worker) {
                         job->hand[worker].planar);
 }
 
-static iso_status fill_task(void *payload, int64_t number, int worker) {
+static iso_status split_task(void *payload, int64_t number, int worker) {
     iso_job *job = payload;
     int32_t index = job->begin + (int32_t)number;
     iso_shell_neighbours around = window_around(&job->window, index);
-    return layer_fill(window_layer(&job->window, index), &job->hand[worker], &around);
+    return layer_split(window_layer(&job->window, index), &job->hand[worker], &around);
+}
+
+static iso_status fill_task(void *payload, int64_t number, int worker) {
+    iso_job *job = payload;
+    int32_t index = job->begin + (int32_t)number;
+    const iso_layer *beneath = index > 0 ? window_layer(&job->window, index - 1) : NULL;
+    return layer_fill(window_layer(&job->window, index), &job->hand[worker], beneath);
 }
 
 /* Models lie on the bed; what is drawn around them need not. */
@@ -271,6 +278,16 @@ static iso_status advance(iso_job *job, int32_t end) {
     return ISO_OK;
 }
 
+/* Layers up to `end` split into their shells. */
+static iso_status split_layers(iso_job *job, int32_t end) {
+    iso_window *window = &job->window;
+    ISO_TRY(advance(job, least(end + window->top, window->count)));
+    job->begin = window->split;
+    ISO_TRY(iso_parallel_for(job->pool, end - job->begin, split_task, job));
+    window->split = end;
+    return ISO_OK;
+}
+
 /* Outlines run ahead by the height of the top shell, and stay until the bottom shell above them is
  * done. */
 static iso_status make_layers(iso_job *job) {
@@ -279,7 +296,7 @@ static iso_status make_layers(iso_job *job) {
     for (int32_t filled = 0; filled < count;) {
         int32_t end = least(filled + job->block, count);
         progress(job, 0.15 + 0.85 * filled / count, "layers");
-        ISO_TRY(advance(job, least(end + job->window.top, count)));
+        ISO_TRY(split_layers(job, end));
         job->begin = filled;
         ISO_TRY(iso_parallel_for(job->pool, end - filled, fill_task, job));
         for (; filled < end; filled++)
@@ -432,9 +449,8 @@ static iso_status load(iso_job *job, const char *const *input, int32_t input_cou
     progress(job, 0.1, stage_name[ISO_STAGE_SLICE]);
     ISO_TRY(slice_models(job));
     ISO_TRY(verify_volume(job));
-    int32_t top, bottom;
-    settings_shells(&top, &bottom, job->options);
-    ISO_TRY(window_new(&job->window, job->levels.count, top, bottom, job->block));
+    iso_shell_depth shells = settings_of_shells(job->options);
+    ISO_TRY(window_new(&job->window, &job->levels, &shells, job->block, 0));
     job->seconds[ISO_STAGE_READ] = read - begun;
     job->seconds[ISO_STAGE_SLICE] = iso_stage_clock() - read;
     return ISO_OK;

@@ -24,7 +24,6 @@ void hand_free(iso_hand *hand) {
     iso_region_free(&hand->island);
     iso_region_free(&hand->inside);
     iso_region_free(&hand->part);
-    iso_shell_free(&hand->shell);
 }
 
 iso_status layer_new(iso_layer *layer, int32_t levels) {
@@ -40,6 +39,7 @@ void layer_free(iso_layer *layer) {
     iso_release(layer->run);
     iso_region_free(&layer->region);
     iso_region_free(&layer->area);
+    iso_shell_free(&layer->shell);
     iso_paths_free(&layer->paths);
     iso_release(layer->group);
 }
@@ -144,7 +144,8 @@ iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *sli
 typedef struct iso_filling {
     iso_layer *layer;
     iso_hand *hand;
-    const iso_island_search *areas; /* NULL: parts are those of the area itself */
+    const iso_island_search *areas;
+    const iso_region *beneath; /* outline of the layer below; NULL: the bed */
 } iso_filling;
 
 /* Inset each part of the region by half a spacing, for the middles of the lines, and fill it. */
@@ -190,35 +191,82 @@ static iso_status fill_region(const iso_filling *f, const iso_region *region,
     return ISO_OK;
 }
 
-static iso_status fill_shelled(iso_layer *layer, iso_hand *hand) {
+/* Each bridge in the direction that suits it. */
+static iso_status fill_bridges(const iso_filling *f) {
+    const iso_layer_settings *s = &f->layer->settings;
+    const iso_region *bridges = &f->layer->shell.bridge;
+    iso_hand *hand = f->hand;
+    iso_islands parts;
+    if (bridges->count == 0)
+        return ISO_OK;
+    ISO_TRY(islands_of(&parts, bridges, &hand->arena));
+    for (int32_t i = 0; i < parts.count; i++) {
+        iso_fill_options fill = s->bridge;
+        ISO_TRY(island_copy(&hand->part, bridges, &parts, i));
+        if (!s->bridge_angle_given && f->beneath)
+            ISO_TRY(iso_bridge_angle(&fill.angle, &hand->part, f->beneath, fill.angle,
+                                     hand->planar));
+        ISO_TRY(fill_part(f, &hand->part, &fill, 1, group_of(f, bridges, &parts, i)));
+    }
+    return ISO_OK;
+}
+
+static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) {
     const iso_layer_settings *s = &layer->settings;
+    const iso_shell *shell = &layer->shell;
     iso_islands areas;
     iso_island_search search;
     ISO_TRY(islands_of(&areas, &layer->area, &hand->arena));
     ISO_TRY(island_search_new(&search, &layer->area, &areas, &hand->arena));
-    iso_filling filling = {layer, hand, &search};
-    ISO_TRY(fill_region(&filling, &hand->shell.top, &s->top, 1));
-    ISO_TRY(fill_region(&filling, &hand->shell.solid, &s->solid, 1));
-    return fill_region(&filling, &hand->shell.sparse, s->sparse, s->sparse_count);
+    iso_filling filling = {layer, hand, &search, beneath ? &beneath->region : NULL};
+    ISO_TRY(fill_bridges(&filling));
+    ISO_TRY(fill_region(&filling, &shell->lid, &s->lid, 1));
+    ISO_TRY(fill_region(&filling, &shell->top, &s->top, 1));
+    ISO_TRY(fill_region(&filling, &shell->solid, &s->solid, 1));
+    return fill_region(&filling, &shell->sparse, s->sparse, s->sparse_count);
 }
 
-iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_shell_neighbours *around) {
-    const iso_layer_settings *s = &layer->settings;
+iso_status layer_split(iso_layer *layer, iso_hand *hand, const iso_shell_neighbours *around) {
     double begun = iso_stage_clock();
-    bool shelled = (around->above.layers > 0 || around->below.layers > 0) && layer->area.count > 0;
-    if (shelled) {
-        ISO_TRY(iso_shell_split(&hand->shell, &layer->area, around, &s->shell, hand->planar));
-        ISO_TRY(check(&hand->shell.top, hand));
-        ISO_TRY(check(&hand->shell.solid, hand));
-        ISO_TRY(check(&hand->shell.sparse, hand));
-    }
-    double split = iso_stage_clock();
+    iso_shell *shell = &layer->shell;
+    ISO_TRY(iso_shell_split(shell, &layer->area, around, &layer->settings.shell, hand->planar));
+    ISO_TRY(check(&shell->top, hand));
+    ISO_TRY(check(&shell->bridge, hand));
+    ISO_TRY(check(&shell->solid, hand));
+    ISO_TRY(check(&shell->sparse, hand));
+    layer->seconds[ISO_STAGE_SHELLS] += iso_stage_clock() - begun;
+    return ISO_OK;
+}
+
+/* What depends on the layer below, split. */
+static iso_status lie_on(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) {
+    const iso_layer_settings *s = &layer->settings;
+    iso_shell *shell = &layer->shell;
+    if (s->lid_least > 0)
+        ISO_TRY(iso_shell_find_lids(shell, &beneath->shell.sparse, s->lid_least,
+                                    s->shell.bridge_anchor, hand->planar));
+    ISO_TRY(check(&shell->lid, hand));
+    ISO_TRY(check(&shell->solid, hand));
+    if (s->overhang.reach > 0)
+        return iso_walls_find_overhangs(&layer->paths, &beneath->region, &s->overhang,
+                                        hand->planar);
+    return ISO_OK;
+}
+
+iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) {
+    const iso_layer_settings *s = &layer->settings;
+    const iso_shell *shell = &layer->shell;
+    double begun = iso_stage_clock();
+    if (beneath)
+        ISO_TRY(lie_on(layer, hand, beneath));
+    bool shelled = shell->top.count + shell->solid.count + shell->bridge.count + shell->lid.count;
+    double ready = iso_stage_clock();
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
-    iso_filling whole = {layer, hand, NULL};
-    iso_status status = shelled ? fill_shelled(layer, hand)
-                                : fill_region(&whole, &layer->area, s->sparse, s->sparse_count);
+    iso_filling all = {.layer = layer, .hand = hand};
+    iso_status status = shelled ? fill_shelled(layer, hand, beneath)
+                                : fill_region(&all, &layer->area, s->sparse, s->sparse_count);
     iso_arena_pop(&hand->arena, mark);
-    layer->seconds[ISO_STAGE_SHELLS] += split - begun;
-    layer->seconds[ISO_STAGE_FILL] = iso_stage_clock() - split;
+    layer->seconds[ISO_STAGE_SHELLS] += ready - begun;
+    layer->seconds[ISO_STAGE_FILL] = iso_stage_clock() - ready;
     return status;
 }

@@ -1,8 +1,8 @@
 /* One layer on its way from slices to paths. Only the job calls these, in this order:
  *
  *     layer_outline   region, walls, and the area that is left for the fill    each layer by itself
- *     layer_fill      shells and fill                                          needs its
- * neighbours' regions
+ *     layer_split     the area's shells                            needs its neighbours' regions
+ *     layer_fill      lids, overhangs and fill                     needs the layer below, split
  */
 #ifndef ISO_LAYER_H
 #define ISO_LAYER_H
@@ -35,6 +35,7 @@ typedef struct iso_layer {
     iso_region area; /* within the walls, island by island */
     int32_t *group;  /* [area.count] island of `region` that each contour lies in */
     int64_t group_capacity;
+    iso_shell shell; /* the area, split */
     iso_paths paths;
     double square_mm; /* of the region */
     double seconds[ISO_STAGE_COUNT];
@@ -45,7 +46,6 @@ typedef struct iso_hand {
     iso_planar_scratch *planar;
     iso_arena arena;
     iso_region raw, island, inside, part;
-    iso_shell shell;
 } iso_hand;
 
 iso_status hand_new(iso_hand *hand) ISO_MUST_CHECK;
@@ -59,8 +59,11 @@ iso_status layer_new(iso_layer *layer, int32_t levels) ISO_MUST_CHECK;
 iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *slices,
                          int32_t model_count, int32_t index) ISO_MUST_CHECK;
 
-/* Add the fill. */
-iso_status layer_fill(iso_layer *layer, iso_hand *hand,
-                      const iso_shell_neighbours *around) ISO_MUST_CHECK;
+/* Split the area into its shells. */
+iso_status layer_split(iso_layer *layer, iso_hand *hand,
+                       const iso_shell_neighbours *around) ISO_MUST_CHECK;
+
+/* Add the fill. `beneath` is the layer below, split; NULL: the bed. */
+iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) ISO_MUST_CHECK;
 
 #endif

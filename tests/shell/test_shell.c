@@ -340,7 +340,7 @@ static void test_none(void) {
     split(&shell, &fill, &off, &usual, 11);
     CHECK_NEAR(324, area_of(&shell.sparse), 1e-9);
     iso_shell_neighbours neighbours = {
-        &outline, &outline, {1, 0, 1, {&outline}}, {1, 0, 1, {&outline}}};
+        &outline, &outline, {1, 0, 1, {&outline}}, {1, 0, 1, {&outline}}, NULL};
     CHECK_OK(iso_shell_split(&shell, &nothing, &neighbours, &usual, scratch));
     CHECK(shell.top.count == 0 && shell.solid.count == 0 && shell.sparse.count == 0);
     on.above_count = on.below_count = 0;
@@ -496,7 +496,7 @@ static void test_no_memory(void) {
     iso_region outline[] = {random_region(), random_region(), random_region()};
     iso_region fill = random_region();
     iso_shell_neighbours around = {
-        &fill, &outline[0], {2, 0, 2, {&outline[1], &outline[0]}}, {1, 0, 1, {&outline[2]}}};
+        &fill, &outline[0], {2, 0, 2, {&outline[1], &outline[0]}}, {1, 0, 1, {&outline[2]}}, NULL};
     iso_status status = ISO_NO_MEMORY;
     int64_t n = 0;
     for (; status == ISO_NO_MEMORY && n < 2000; n++) {

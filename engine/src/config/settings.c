@@ -1,5 +1,7 @@
 #include "config/settings.h"
 
+#include <math.h>
+
 #include <isoslice/version.h>
 
 #include "config/placeholder.h"
@@ -12,6 +14,11 @@
 /* No finer arcs than 2 um from the true one, whatever gcode_resolution says: each wall would draw a
  * hundred points around every point of the one before. */
 enum { FINEST_ARC = 20 };
+
+/* In spacings of solid lines; PrusaSlicer's are alike. Bridges reach onto what carries them. */
+enum { SHELL_ANCHOR = 3, BRIDGE_ANCHOR = 2 };
+
+enum { BRIDGE_GAP = 500 }; /* units between the threads of a bridge; the figure is PrusaSlicer's */
 
 static iso_bead bead_of(const iso_options *options, iso_role role, bool first, double height) {
     return iso_bead_of(iso_units(iso_options_width(options, role, first, height)),
@@ -79,16 +86,79 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
     }
     s->fill_inset = solid.spacing / 2;
     s->wall.fill_inset = -overlap_of(s, options, first, height);
-    s->shell = (iso_shell_options){.narrowest = full ? 2 * solid.spacing : solid.spacing,
-                                   .anchor = full ? 0 : 2 * solid.spacing};
 }
 
-void settings_shells(int32_t *top, int32_t *bottom, const iso_options *options) {
+/* Threads through the air are round, as thick as the nozzle, and lie a little apart; else they are
+ * beads of the layer's height with some other flow. */
+static iso_bead bridge_bead(const iso_options *options, iso_role role, bool first, double height) {
+    iso_bead bead = bead_of(options, role, first, height);
+    double ratio = options->bridge_flow_ratio;
+    bead.area = (int32_t)(bead.area * ratio + 0.5);
+    if (!options->thick_bridges)
+        return bead;
+    bead.width = bead.height = iso_units(options->nozzle_diameter * sqrt(ratio));
+    bead.area = iso_bead_of(bead.width, bead.height).area;
+    bead.spacing = bead.width + BRIDGE_GAP;
+    return bead;
+}
+
+/* bridge_angle is a direction from 180 degrees on, as for PrusaSlicer: 0 is none. */
+static void set_bridges(iso_layer_settings *s, const iso_options *options, bool first,
+                        double height) {
+    iso_bead bead = bridge_bead(options, ISO_ROLE_SOLID_INFILL, first, height);
+    iso_bead wall = bridge_bead(options, ISO_ROLE_PERIMETER, first, height);
+    s->bridge = iso_fill_defaults(bead, 1);
+    s->bridge.angle = s->solid.angle;
+    s->bridge.like = s->solid.like;
+    s->bridge.like.role = ISO_ROLE_BRIDGE_INFILL;
+    s->lid = s->bridge;
+    s->bridge_angle_given = options->bridge_angle > 0;
+    if (s->bridge_angle_given)
+        s->bridge.angle = options->bridge_angle;
+    s->lid_least = options->fill_density < 100 ? bead.width : 0;
+    s->overhang = (iso_overhang_options){.reach = iso_units(options->nozzle_diameter) / 2,
+                                         .shortest = wall.width,
+                                         .width = wall.width,
+                                         .area = wall.area};
+    if (!options->overhangs)
+        s->overhang.reach = 0;
+}
+
+/* Solid strips narrower than a line are left to the walls above and below them, unless the shell
+ * has to be as thick everywhere; others reach ANCHOR lines into the sparse fill, so that lines
+ * across them are long enough to hold. */
+static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
+                      double height) {
     bool full = options->fill_density >= 100;
-    *top = options->top_solid_layers;
-    *bottom = full ? 0 : options->bottom_solid_layers;
-    if (full && *top > 1)
-        *top = 1;
+    int32_t spacing = bead_of(options, ISO_ROLE_SOLID_INFILL, first, height).spacing;
+    int32_t every = options->solid_infill_every_layers;
+    s->shell = (iso_shell_options){
+        .narrowest = full                                       ? 2 * spacing
+                     : options->ensure_vertical_shell_thickness ? spacing / 4
+                                                                : spacing,
+        .anchor = full ? 0 : SHELL_ANCHOR * spacing,
+        .bridge_least = spacing,
+        .bridge_anchor = BRIDGE_ANCHOR * spacing,
+        .whole = !full && options->fill_density > 0 && every > 0 && index % every == 0,
+    };
+    if (!full && options->fill_density > 0)
+        s->shell.sparse_least =
+            (int64_t)(options->solid_infill_below_area * 2 * ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
+}
+
+iso_shell_depth settings_of_shells(const iso_options *options) {
+    bool full = options->fill_density >= 100;
+    iso_shell_depth depth = {.top_layers = options->top_solid_layers,
+                             .bottom_layers = options->bottom_solid_layers,
+                             .top_thickness = options->top_solid_min_thickness,
+                             .bottom_thickness = options->bottom_solid_min_thickness,
+                             .bridges = options->bottom_solid_layers > 0};
+    if (full) {
+        depth.top_layers = depth.top_layers > 0;
+        depth.bottom_layers = 0;
+        depth.top_thickness = 0;
+    }
+    return depth;
 }
 
 void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_t index,
@@ -96,6 +166,8 @@ void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_
     bool first = index == 0;
     set_walls(s, options, first, height);
     set_fill(s, options, index, first, height);
+    set_shell(s, options, index, first, height);
+    set_bridges(s, options, first, height);
     s->skirt = bead_of(options, ISO_ROLE_SKIRT, first, height);
     s->skirt_loops = first ? options->skirts : 0;
     s->skirt_distance = iso_units(options->skirt_distance) + s->skirt.width / 2;

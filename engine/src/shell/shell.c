@@ -1,5 +1,6 @@
 #include <isoslice/shell.h>
 
+#include "planar/island.h"
 #include "planar/region.h"
 #include "planar/scratch.h"
 
@@ -9,8 +10,11 @@ enum { SHELL_TOP = 1, SHELL_ABOVE, SHELL_BELOW };
 
 void iso_shell_free(iso_shell *shell) {
     iso_region_free(&shell->top);
+    iso_region_free(&shell->bridge);
+    iso_region_free(&shell->lid);
     iso_region_free(&shell->solid);
     iso_region_free(&shell->sparse);
+    iso_region_free(&shell->rest);
     iso_region_free(&shell->spare);
 }
 
@@ -56,24 +60,23 @@ static bool is_exposed(const iso_winding *w, const void *context) {
 }
 
 /* Drop what is too narrow to print and let the rest reach out a little. */
-static iso_status trim(iso_region *region, iso_region *spare, const iso_shell_options *options,
+static iso_status trim(iso_region *region, iso_region *spare, int32_t narrowest, int32_t anchor,
                        iso_planar_scratch *scratch) {
-    iso_offset_options shrink = iso_offset_defaults(-options->narrowest / 2);
-    iso_offset_options grow = iso_offset_defaults(options->narrowest / 2 + options->anchor);
+    iso_offset_options shrink = iso_offset_defaults(-narrowest / 2);
+    iso_offset_options grow = iso_offset_defaults(narrowest / 2 + anchor);
     if (region->count == 0)
         return ISO_OK;
     ISO_TRY(iso_offset(spare, region, &shrink, scratch));
     return iso_offset(region, spare, &grow, scratch);
 }
 
-/* The part of the fill that one side leaves bare, trimmed. One side at a time: its cover rarely
- * comes near the fill, while the covers of two sides cross each other all along a wall. */
-static iso_status expose(iso_region *out, iso_region *spare, const iso_region *fill,
-                         const iso_shell_side *side, const iso_shell_options *options,
+/* The part of the fill that one side leaves bare. One side at a time: its cover rarely comes near
+ * the fill, while the covers of two sides cross each other all along a wall. */
+static iso_status expose(iso_region *out, const iso_region *fill, const iso_shell_side *side,
                          iso_planar_scratch *scratch) {
     if (side->missing > 0)
         return copy_region(out, fill);
-    if (side->count == 0) {
+    if (side->count == 0 || fill->count == 0) {
         iso_region_clear(out);
         return ISO_OK;
     }
@@ -81,8 +84,7 @@ static iso_status expose(iso_region *out, iso_region *spare, const iso_region *f
     ISO_TRY(edges_add(&scratch->edges, fill, FILL));
     for (int32_t i = 0; i < side->count; i++)
         ISO_TRY(edges_add(&scratch->edges, side->cover[i], COVER));
-    ISO_TRY(planar_resolve(&(iso_choice){out, is_exposed, side}, 1, scratch));
-    return trim(out, spare, options, scratch);
+    return planar_resolve(&(iso_choice){out, is_exposed, side}, 1, scratch);
 }
 
 /* A cover like the layer's own outline, as on any upright wall, covers all of its fill. */
@@ -94,15 +96,47 @@ static iso_shell_side without_own(const iso_shell_side *side, const iso_region *
     return rest;
 }
 
-static iso_shell_side next_side(const iso_shell_neighbours *around) {
-    iso_shell_side side = {.layers = around->above.layers > 0};
-    if (side.layers > 0 && around->next)
-        side.cover[side.count++] = around->next;
-    side.missing = side.layers - side.count;
+static iso_shell_side one_layer(const iso_region *outline, bool missing) {
+    iso_shell_side side = {.layers = 1, .missing = missing};
+    if (outline)
+        side.cover[side.count++] = outline;
     return side;
 }
 
-/* ---- the three parts ---- */
+/* What is bare of the next layer alone is bare of all of them together, so it is looked for in
+ * that. At full density no layer below the next counts, and bridges are looked for everywhere. */
+static iso_status expose_all(iso_shell *shell, const iso_region *fill,
+                             const iso_shell_neighbours *around, const iso_shell_options *options,
+                             iso_planar_scratch *scratch) {
+    iso_shell_side above = without_own(&around->above, around->own);
+    iso_shell_side below = without_own(&around->below, around->own);
+    iso_shell_side next = one_layer(around->next, !around->next);
+    iso_shell_side beneath = one_layer(around->beneath, false);
+    next = without_own(&next, around->own);
+    beneath = without_own(&beneath, around->own);
+    bool alone = above.missing == 0 && around->above.layers == 1;
+    ISO_TRY(expose(&shell->solid, fill, &above, scratch));
+    ISO_TRY(expose(&shell->sparse, fill, &below, scratch));
+    ISO_TRY(alone ? copy_region(&shell->top, &shell->solid)
+                  : expose(&shell->top, &shell->solid, &next, scratch));
+    ISO_TRY(expose(&shell->bridge, around->below.layers > 0 ? &shell->sparse : fill, &beneath,
+                   scratch));
+    iso_region *spare = &shell->spare;
+    ISO_TRY(trim(&shell->top, spare, options->narrowest, options->anchor, scratch));
+    ISO_TRY(trim(&shell->solid, spare, options->narrowest, options->anchor, scratch));
+    ISO_TRY(trim(&shell->sparse, spare, options->narrowest, options->anchor, scratch));
+    return trim(&shell->bridge, spare, options->bridge_least, options->bridge_anchor, scratch);
+}
+
+/* ---- the parts ---- */
+
+static bool in_both(const iso_winding *w, const void *context) {
+    return w->of[FILL] > 0 && w->of[COVER] > 0;
+}
+
+static bool in_rest(const iso_winding *w, const void *context) {
+    return w->of[FILL] > 0 && w->of[COVER] <= 0;
+}
 
 static bool in_top(const iso_winding *w, const void *context) {
     return w->of[FILL] > 0 && w->of[SHELL_TOP] > 0;
@@ -118,17 +152,71 @@ static bool in_sparse(const iso_winding *w, const void *context) {
            w->of[SHELL_BELOW] <= 0;
 }
 
-static iso_status split(iso_shell *shell, const iso_region *fill,
-                        const iso_shell_neighbours *around, const iso_shell_options *options,
-                        iso_planar_scratch *scratch) {
-    iso_shell_side next = next_side(around);
-    next = without_own(&next, around->own);
-    iso_shell_side above = without_own(&around->above, around->own);
-    iso_shell_side below = without_own(&around->below, around->own);
-    iso_region *spare = &shell->spare;
-    ISO_TRY(expose(&shell->top, spare, fill, &next, options, scratch));
-    ISO_TRY(expose(&shell->solid, spare, fill, &above, options, scratch));
-    ISO_TRY(expose(&shell->sparse, spare, fill, &below, options, scratch));
+/* `part` becomes what `whole` and it share, `rest` the rest of the whole. */
+static iso_status cut(iso_region *part, iso_region *rest, const iso_region *whole,
+                      iso_planar_scratch *scratch) {
+    scratch->edges.count = 0;
+    ISO_TRY(edges_add(&scratch->edges, whole, FILL));
+    ISO_TRY(edges_add(&scratch->edges, part, COVER));
+    iso_choice choice[] = {{part, in_both, NULL}, {rest, in_rest, NULL}};
+    return planar_resolve(choice, 2, scratch);
+}
+
+/* Twice the area of each island of the region; in the scratch's arena. */
+static iso_status island_areas(int64_t **area, iso_islands *islands, const iso_region *region,
+                               iso_planar_scratch *scratch) {
+    ISO_TRY(islands_of(islands, region, &scratch->arena));
+    ISO_TRY(ISO_PUSH(*area, &scratch->arena, islands->count));
+    for (int32_t i = 0; i < islands->count; i++) {
+        (*area)[i] = 0;
+        for (int32_t k = islands->first[i]; k < islands->first[i + 1]; k++) {
+            int32_t c = islands->contour[k];
+            (*area)[i] += contour_double_area(region->point + region->first[c],
+                                              region->first[c + 1] - region->first[c]);
+        }
+    }
+    return ISO_OK;
+}
+
+/* Move the small islands of the sparse part to the solid one, with which they then are one. */
+static iso_status fill_small(iso_shell *shell, const iso_shell_options *options,
+                             iso_planar_scratch *scratch) {
+    iso_islands islands;
+    int64_t *area;
+    iso_region *sparse = &shell->sparse, *solid = &shell->solid;
+    ISO_TRY(island_areas(&area, &islands, sparse, scratch));
+    int32_t small = 0;
+    for (int32_t i = 0; i < islands.count; i++)
+        small += area[i] < options->sparse_least;
+    if (small == 0)
+        return ISO_OK;
+    iso_region *raw = &shell->rest;
+    ISO_TRY(copy_region(raw, solid));
+    ISO_TRY(copy_region(&shell->spare, sparse));
+    iso_region_clear(sparse);
+    for (int32_t i = 0; i < islands.count; i++)
+        for (int32_t k = islands.first[i], base = sparse->count; k < islands.first[i + 1]; k++) {
+            const iso_region *from = &shell->spare;
+            int32_t c = islands.contour[k];
+            iso_region *to = area[i] < options->sparse_least ? raw : sparse;
+            ISO_TRY(iso_region_add(to, from->point + from->first[c],
+                                   from->first[c + 1] - from->first[c]));
+            if (to == sparse)
+                sparse->parent[sparse->count - 1] = k == islands.first[i] ? -1 : base;
+        }
+    return iso_region_clean(solid, raw, ISO_FILL_POSITIVE, scratch);
+}
+
+/* Nothing sparse: the fill without its top. */
+static iso_status make_whole(iso_shell *shell, const iso_region *fill,
+                             iso_planar_scratch *scratch) {
+    iso_region_clear(&shell->sparse);
+    if (shell->top.count == 0)
+        return copy_region(&shell->solid, fill);
+    return cut(&shell->top, &shell->solid, fill, scratch);
+}
+
+static iso_status assemble(iso_shell *shell, const iso_region *fill, iso_planar_scratch *scratch) {
     if (shell->top.count == 0 && shell->solid.count == 0 && shell->sparse.count == 0)
         return copy_region(&shell->sparse, fill);
     scratch->edges.count = 0;
@@ -142,15 +230,64 @@ static iso_status split(iso_shell *shell, const iso_region *fill,
     return planar_resolve(choice, 3, scratch);
 }
 
+static iso_status split(iso_shell *shell, const iso_region *fill,
+                        const iso_shell_neighbours *around, const iso_shell_options *options,
+                        iso_planar_scratch *scratch) {
+    iso_region_clear(&shell->lid);
+    ISO_TRY(expose_all(shell, fill, around, options, scratch));
+    if (shell->bridge.count > 0) {
+        ISO_TRY(cut(&shell->bridge, &shell->rest, fill, scratch));
+        fill = &shell->rest;
+    }
+    if (options->whole)
+        return make_whole(shell, fill, scratch);
+    ISO_TRY(assemble(shell, fill, scratch));
+    return options->sparse_least > 0 ? fill_small(shell, options, scratch) : ISO_OK;
+}
+
 iso_status iso_shell_split(iso_shell *shell, const iso_region *fill,
                            const iso_shell_neighbours *around, const iso_shell_options *options,
                            iso_planar_scratch *scratch) {
+    iso_arena_mark mark = iso_arena_get_mark(&scratch->arena);
     iso_status status = split(shell, fill, around, options, scratch);
+    iso_arena_pop(&scratch->arena, mark);
     if (status != ISO_OK) {
         scratch->edges.count = 0;
         iso_region_clear(&shell->top);
+        iso_region_clear(&shell->bridge);
+        iso_region_clear(&shell->lid);
         iso_region_clear(&shell->solid);
         iso_region_clear(&shell->sparse);
+    }
+    return status;
+}
+
+/* ---- lids ---- */
+
+/* Where the sparse fill, shrunk, meets the solid part is well over it. On slopes the two only
+ * overlap by a strip along their edges, so that mostly nothing collides. */
+static iso_status find_lids(iso_shell *shell, const iso_region *sparse_below, int32_t least,
+                            int32_t anchor, iso_planar_scratch *scratch) {
+    iso_offset_options shrink = iso_offset_defaults(-least);
+    iso_offset_options grow = iso_offset_defaults(least + anchor);
+    ISO_TRY(iso_offset(&shell->spare, sparse_below, &shrink, scratch));
+    ISO_TRY(iso_boolean(&shell->rest, ISO_INTERSECTION, &shell->solid, &shell->spare, scratch));
+    if (shell->rest.count == 0)
+        return ISO_OK;
+    ISO_TRY(iso_offset(&shell->lid, &shell->rest, &grow, scratch));
+    ISO_TRY(cut(&shell->lid, &shell->rest, &shell->solid, scratch));
+    return copy_region(&shell->solid, &shell->rest);
+}
+
+iso_status iso_shell_find_lids(iso_shell *shell, const iso_region *sparse_below, int32_t least,
+                               int32_t anchor, iso_planar_scratch *scratch) {
+    iso_region_clear(&shell->lid);
+    if (!sparse_below || sparse_below->count == 0 || shell->solid.count == 0)
+        return ISO_OK;
+    iso_status status = find_lids(shell, sparse_below, least, anchor, scratch);
+    if (status != ISO_OK) {
+        iso_region_clear(&shell->lid);
+        iso_region_clear(&shell->solid);
     }
     return status;
 }
