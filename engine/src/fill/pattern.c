@@ -1,4 +1,6 @@
-#include <isoslice/fill.h>
+#include "fill/pattern.h"
+
+#include "fill/sweep.h"
 
 int iso_fill_pattern_is_solid(iso_fill_pattern pattern) {
     switch (pattern) {
@@ -28,8 +30,117 @@ double iso_fill_pattern_turn(iso_fill_pattern pattern, int32_t index) {
     }
 }
 
+double iso_pattern_frame(iso_fill_pattern pattern) {
+    switch (pattern) {
+    case ISO_PATTERN_GYROID: /* its waves run along the diagonals of its cells */
+        return -45;
+    default:
+        return 0;
+    }
+}
+
+typedef void draw_curves(iso_clip *clip, const iso_fill_options *options);
+
+static draw_curves *curves_of(iso_fill_pattern pattern) {
+    switch (pattern) {
+    case ISO_PATTERN_LINE:
+        return iso_pattern_line;
+    case ISO_PATTERN_HONEYCOMB:
+        return iso_pattern_honeycomb;
+    case ISO_PATTERN_HONEYCOMB_3D:
+        return iso_pattern_honeycomb_3d;
+    case ISO_PATTERN_GYROID:
+        return iso_pattern_gyroid;
+    case ISO_PATTERN_HILBERT:
+        return iso_pattern_hilbert;
+    case ISO_PATTERN_ARCHIMEDEAN:
+        return iso_pattern_archimedean;
+    default:
+        return iso_pattern_octagram;
+    }
+}
+
+static iso_status fill_curves(iso_paths *out, const iso_region *region,
+                              const iso_fill_options *options, iso_arena *scratch) {
+    iso_clip clip;
+    iso_weave weave;
+    iso_fill_pattern pattern = (iso_fill_pattern)options->pattern;
+    double angle = options->angle + iso_pattern_frame(pattern);
+    ISO_TRY(iso_clip_begin(&clip, region, angle, options->origin, scratch));
+    curves_of(pattern)(&clip, options);
+    ISO_TRY(iso_clip_end(&weave, &clip));
+#ifndef NDEBUG
+    ISO_TRY(iso_weave_validate(&weave));
+#endif
+    return iso_weave_draw(out, &weave, options, scratch);
+}
+
+/* Straight lines, with line 0 through the origin. */
+static iso_status fill_straight(iso_paths *out, const iso_region *region,
+                                const iso_fill_options *options, iso_arena *scratch) {
+    iso_fill_options placed = *options;
+    iso_sweep sweep = iso_sweep_of(options->angle);
+    placed.phase += (double)iso_sweep_v(&sweep, options->origin) / (double)ISO_SWEEP_ONE;
+    placed.monotonic |= options->pattern == ISO_PATTERN_MONOTONIC;
+    return iso_fill_rectilinear(out, region, &placed, scratch);
+}
+
+static iso_status fill_pattern(iso_paths *out, const iso_region *region,
+                               const iso_fill_options *options, iso_arena *scratch,
+                               iso_planar_scratch *planar) {
+    iso_fill_pattern pattern = (iso_fill_pattern)options->pattern;
+    if (options->density >= 1 && !iso_fill_pattern_is_solid(pattern))
+        pattern = ISO_PATTERN_RECTILINEAR;
+    switch (pattern) {
+    case ISO_PATTERN_RECTILINEAR:
+    case ISO_PATTERN_ALIGNED:
+    case ISO_PATTERN_MONOTONIC:
+        return fill_straight(out, region, options, scratch);
+    case ISO_PATTERN_GRID:
+    case ISO_PATTERN_TRIANGLES:
+    case ISO_PATTERN_STARS:
+    case ISO_PATTERN_CUBIC:
+        return iso_pattern_lines(out, region, options, scratch);
+    case ISO_PATTERN_CONCENTRIC:
+        return iso_pattern_concentric(out, region, options, planar);
+    default:
+        return fill_curves(out, region, options, scratch);
+    }
+}
+
+static iso_status validate(const iso_fill_options *options) {
+    ISO_TRY(iso_fill_options_validate(options));
+    if (options->pattern < 0 || options->pattern >= ISO_PATTERN_COUNT)
+        return iso_fail(ISO_USAGE, "fill: there is no pattern %d", options->pattern);
+    if (!(options->density > 0 && options->density <= 1))
+        return iso_fail(ISO_USAGE, "fill: a density of %g is out of range (above 0, to 1)",
+                        options->density);
+    if (options->z < 0)
+        return iso_fail(ISO_USAGE, "fill: a height of %g mm is below the bed", iso_mm(options->z));
+    return ISO_OK;
+}
+
 iso_status iso_fill(iso_paths *out, const iso_region *region, const iso_fill_options *options,
                     struct iso_arena *scratch, iso_planar_scratch *planar) {
-    (void)planar;
-    return iso_fill_rectilinear(out, region, options, scratch);
+    ISO_TRY(validate(options));
+    if (region->count == 0 || region->first[region->count] == 0)
+        return ISO_OK;
+    iso_arena own = {0};
+    scratch = scratch ? scratch : &own;
+    iso_planar_scratch *own_planar = NULL;
+    int32_t count = out->count, vertex_count = out->vertex_count;
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    iso_status status = ISO_OK;
+    if (!planar && options->pattern == ISO_PATTERN_CONCENTRIC)
+        status = iso_planar_scratch_new(&own_planar);
+    if (status == ISO_OK)
+        status = fill_pattern(out, region, options, scratch, planar ? planar : own_planar);
+    iso_arena_pop(scratch, mark);
+    iso_arena_free(&own);
+    iso_planar_scratch_free(own_planar);
+    if (status != ISO_OK) {
+        out->count = count;
+        out->vertex_count = vertex_count;
+    }
+    return status;
 }
