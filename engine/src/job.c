@@ -44,6 +44,7 @@ typedef struct iso_job {
     int32_t begin,
         level; /* first layer of the parallel loop under way, and the level of its runs */
     iso_paths ordered;
+    iso_order_state order;
     iso_output *output;
     iso_gcode_writer *writer;
     char *start, *end;           /* expanded texts */
@@ -227,12 +228,14 @@ static iso_status check_skirt(const iso_job *job, const iso_paths *paths) {
     return ISO_OK;
 }
 
-static iso_status write_layer(iso_job *job, int32_t index, iso_point *position) {
+static iso_status write_layer(iso_job *job, int32_t index) {
     iso_layer *layer = window_layer(&job->window, index);
     double begun = iso_stage_clock();
     if (index == 0)
         ISO_TRY(check_skirt(job, &layer->paths));
-    ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, position, &job->hand[0].arena));
+    iso_order_options order = settings_of_order(job->options);
+    ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, &job->order, &order,
+                            &job->hand[0].arena));
     double ordered = iso_stage_clock();
     if (job->ordered.count == 0 && job->empty++ == 0)
         job->lowest_empty = index;
@@ -291,7 +294,6 @@ static iso_status split_layers(iso_job *job, int32_t end) {
 /* Outlines run ahead by the height of the top shell, and stay until the bottom shell above them is
  * done. */
 static iso_status make_layers(iso_job *job) {
-    iso_point position = {0, 0};
     int32_t count = job->levels.count;
     for (int32_t filled = 0; filled < count;) {
         int32_t end = least(filled + job->block, count);
@@ -300,7 +302,7 @@ static iso_status make_layers(iso_job *job) {
         job->begin = filled;
         ISO_TRY(iso_parallel_for(job->pool, end - filled, fill_task, job));
         for (; filled < end; filled++)
-            ISO_TRY(write_layer(job, filled, &position));
+            ISO_TRY(write_layer(job, filled));
     }
     progress(job, 1, "done");
     return warn_of_empty_layers(job);
@@ -376,6 +378,7 @@ static void job_free(iso_job *job) {
     for (int32_t i = 0; job->hand && i < job->threads; i++)
         hand_free(&job->hand[i]);
     iso_paths_free(&job->ordered);
+    iso_order_state_free(&job->order);
     iso_levels_free(&job->levels);
     iso_release(job->mesh);
     iso_release(job->slices);

@@ -281,14 +281,16 @@ static void measure_fill(bench_stages *s) {
 
 static void order_all(void *payload) {
     bench_stages *s = payload;
-    iso_point position = {0, 0};
+    iso_order_state state = {0};
+    iso_order_options order = settings_of_order(s->part.options);
     s->bytes = 0;
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        bench_must(iso_order_layer(&s->ordered[i], &s->part.window.layer[i].paths, &position,
-                                   &s->part.hand.arena),
+        bench_must(iso_order_layer(&s->ordered[i], &s->part.window.layer[i].paths, &state,
+                                   &order, &s->part.hand.arena),
                    "order");
         s->bytes += 2 * bytes_of_paths(&s->ordered[i]);
     }
+    iso_order_state_free(&state);
 }
 
 static void write_all(void *payload) {

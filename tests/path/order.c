@@ -13,6 +13,17 @@ static int32_t random_below(int32_t n) {
     return (int32_t)((seed >> 33) % (uint64_t)n);
 }
 
+/* A layer by itself, with the usual options. */
+static iso_status order_layer(iso_paths *out, const iso_paths *in, iso_point *at,
+                              iso_arena *scratch) {
+    iso_order_state state = {.position = *at};
+    iso_order_options options = iso_order_defaults();
+    iso_status status = iso_order_layer(out, in, &state, &options, scratch);
+    *at = state.position;
+    iso_order_state_free(&state);
+    return status;
+}
+
 typedef struct shape {
     int paths, groups, ranks, span, longest;
 } shape;
@@ -24,7 +35,8 @@ static void make_layer(iso_paths *paths, const shape *s) {
         int count = 1 + random_below(s->longest);
         for (int k = 0; k < count; k++)
             point[k] = (iso_point){random_below(s->span) - s->span / 2, random_below(s->span)};
-        iso_path like = {.closed = (uint8_t)random_below(2),
+        iso_path like = {.role = ISO_ROLE_CUSTOM,
+                         .closed = (uint8_t)random_below(2),
                          .object = random_below(2),
                          .group = random_below(s->groups) - 1,
                          .rank = random_below(s->ranks) - 1};
@@ -140,7 +152,7 @@ static void test_random_layers_follow_the_rule(void) {
             seed = (uint64_t)(100 * s + turn);
             make_layer(&in, &shapes[s]);
             iso_point start = {random_below(2000000) - 1000000, turn % 2 ? 0 : -900000}, at = start;
-            CHECK_OK(iso_order_layer(&out, &in, &at, &scratch));
+            CHECK_OK(order_layer(&out, &in, &at, &scratch));
             check_same_beads(&in, &out);
             check_against_plain_rule(&in, &out, start);
             if (out.count > 0) {
@@ -164,13 +176,14 @@ static void test_degenerate_spreads(void) {
             int32_t d = (i * 7919) % 500 * 30000 - 7000000;
             iso_point p[2] = {{along ? d : 5, along ? 5 : d},
                               {along ? d + 9 : 5, along ? 5 : d + 9}};
-            CHECK_OK(iso_paths_add(&in, &(iso_path){0}, p, 2, PATH_STEP * i, 7 * PATH_STEP * i));
+            iso_path like = {.role = ISO_ROLE_CUSTOM};
+            CHECK_OK(iso_paths_add(&in, &like, p, 2, PATH_STEP * i, 7 * PATH_STEP * i));
             in.vertex[2 * i + 1].z = in.vertex[2 * i + 1].width += 1;
             in.vertex[2 * i + 1].z = 1;
             in.vertex[2 * i + 1].area += 7;
         }
         iso_point at = {-ISO_COORDINATE_MAX, ISO_COORDINATE_MAX};
-        CHECK_OK(iso_order_layer(&out, &in, &at, &scratch));
+        CHECK_OK(order_layer(&out, &in, &at, &scratch));
         check_same_beads(&in, &out);
         check_against_plain_rule(&in, &out, (iso_point){-ISO_COORDINATE_MAX, ISO_COORDINATE_MAX});
     }
@@ -198,10 +211,10 @@ static void test_solid_fill_goes_forth_and_back(void) {
     for (int i = 0; i < LINES; i++) {
         int32_t y = (int32_t)((int64_t)i * 7919 % LINES) * 100;
         iso_point p[2] = {{0, y}, {2000000, y}};
-        CHECK_OK(iso_paths_add(&in, &(iso_path){0}, p, 2, 1, 1));
+        CHECK_OK(iso_paths_add(&in, &(iso_path){.role = ISO_ROLE_SOLID_INFILL}, p, 2, 1, 1));
     }
     iso_point at = {0, 0};
-    CHECK_OK(iso_order_layer(&out, &in, &at, &scratch));
+    CHECK_OK(order_layer(&out, &in, &at, &scratch));
     CHECK_EQUAL(LINES, out.count);
     CHECK_NEAR((LINES - 1) * 100.0, travel_of(&out, (iso_point){0, 0}), 0);
     CHECK(travel_of(&out, (iso_point){0, 0}) < travel_of(&in, (iso_point){0, 0}));
@@ -214,11 +227,11 @@ static void test_nothing_and_empty_paths(void) {
     iso_paths in = {0}, out = {0};
     iso_arena scratch = {0};
     iso_point at = {3, 4}, p = {5, 6};
-    CHECK_OK(iso_order_layer(&out, &in, &at, &scratch));
+    CHECK_OK(order_layer(&out, &in, &at, &scratch));
     CHECK(out.count == 0 && at.x == 3 && at.y == 4);
     CHECK_OK(iso_paths_add(&in, &(iso_path){0}, &p, 0, 1, 1));
     CHECK_OK(iso_paths_add(&in, &(iso_path){.closed = 1}, &p, 1, 1, 1));
-    CHECK_OK(iso_order_layer(&out, &in, &at, &scratch));
+    CHECK_OK(order_layer(&out, &in, &at, &scratch));
     CHECK(out.count == 1 && at.x == 5 && at.y == 6);
     iso_arena_free(&scratch);
     iso_paths_free(&in);
@@ -234,7 +247,7 @@ static void test_without_memory(void) {
         iso_arena scratch = {0};
         iso_point at = {1, 2};
         iso_fail_allocation_after(n);
-        iso_status status = iso_order_layer(&out, &in, &at, &scratch);
+        iso_status status = order_layer(&out, &in, &at, &scratch);
         iso_fail_allocation_after(-1);
         if (status != ISO_OK) {
             CHECK_EQUAL(ISO_NO_MEMORY, status);

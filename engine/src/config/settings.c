@@ -115,7 +115,7 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
     s->bridge_angle_given = options->bridge_angle > 0;
     if (s->bridge_angle_given)
         s->bridge.angle = options->bridge_angle;
-    s->lid_least = options->fill_density < 100 ? bead.width : 0;
+    s->lid_least = options->fill_density < 100 ? 2 * bead.width : 0;
     s->overhang = (iso_overhang_options){.reach = iso_units(options->nozzle_diameter) / 2,
                                          .shortest = wall.width,
                                          .width = wall.width,
@@ -171,6 +171,33 @@ void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_
     s->skirt = bead_of(options, ISO_ROLE_SKIRT, first, height);
     s->skirt_loops = first ? options->skirts : 0;
     s->skirt_distance = iso_units(options->skirt_distance) + s->skirt.width / 2;
+}
+
+/* s to move the filament by `length`, from standing to standing. */
+static double filament_seconds(double length, double speed, double acceleration) {
+    double ramps = speed * speed / acceleration;
+    return length < ramps ? 2 * sqrt(length / acceleration) : (length + ramps) / speed;
+}
+
+iso_order_options settings_of_order(const iso_options *options) {
+    double acceleration = options->machine_max_acceleration_retracting;
+    double back = options->retract_speed;
+    double forth = options->deretract_speed > 0 ? options->deretract_speed : back;
+    iso_order_options order = iso_order_defaults();
+    order.seam = (iso_seam)options->seam_position;
+    order.infill_first = options->infill_first;
+    order.retract_crossing_only = options->only_retract_when_crossing_perimeters;
+    order.avoid_crossing = options->avoid_crossing_perimeters;
+    const iso_relative *detour = &options->avoid_crossing_perimeters_max_detour;
+    *(detour->percent ? &order.max_detour_share : &order.max_detour) =
+        detour->percent ? detour->value / 100 : detour->value * ISO_UNITS_PER_MM;
+    order.cost = (iso_travel_cost){
+        .speed = options->travel_speed * ISO_UNITS_PER_MM,
+        .acceleration = options->machine_max_acceleration_travel * ISO_UNITS_PER_MM,
+        .retraction = filament_seconds(options->retract_length, back, acceleration) +
+                      filament_seconds(options->retract_length, forth, acceleration),
+        .retract_before = options->retract_before_travel * ISO_UNITS_PER_MM};
+    return order;
 }
 
 static void set_speeds(iso_gcode_options *g, const iso_options *options) {

@@ -7,6 +7,8 @@
 #include <isoslice/shell.h>
 #include <isoslice/wall.h>
 
+#include "path/order.h"
+
 /* What a layer's paths are made with. */
 typedef struct iso_layer_settings {
     int32_t thinning; /* units by which outlines may be thinned */
@@ -14,10 +16,10 @@ typedef struct iso_layer_settings {
     int32_t fill_inset; /* units from the edge of a filled area to the middles of its lines */
     iso_shell_options shell;
     iso_fill_options top, solid, bridge, lid;
-    int32_t bridge_angle_given; /* else each bridge has its own */
-    int32_t lid_least;          /* units; see iso_shell_find_lids; 0: no lids */
+    int32_t bridge_angle_given;    /* else each bridge has its own */
+    int32_t lid_least;             /* units; see iso_shell_find_lids; 0: no lids */
     iso_overhang_options overhang; /* reach 0: none */
-    int32_t sparse_count; /* passes over the same area */
+    int32_t sparse_count;          /* passes over the same area */
     iso_fill_options sparse[2];
     int32_t skirt_loops;    /* first layer only */
     int32_t skirt_distance; /* units, to the middle of the innermost loop */
@@ -31,6 +33,8 @@ void settings_of_layer(iso_layer_settings *settings, const iso_options *options,
 /* How much of the print is solid around its tops and bottoms. At full density only what is seen
  * from above is told apart, and what is over air. */
 iso_shell_depth settings_of_shells(const iso_options *options);
+
+iso_order_options settings_of_order(const iso_options *options);
 
 /* Start and end texts must already be expanded; they and the options must outlive the result. */
 iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,

@@ -1,36 +1,24 @@
 #include "path/order.h"
 
+#include "path/edges.h"
 #include "path/nearest.h"
+#include "path/ordering.h"
+#include "path/travel.h"
 
-typedef struct key {
-    int32_t object, group, rank, path;
-} key;
-
-/* A run of keys; one level of the hierarchy group > rank > path. */
-typedef struct run {
-    int32_t begin, end;
-} run;
-
-typedef struct ordering {
-    const iso_paths *in;
-    iso_paths *out;
-    iso_arena *scratch;
-    iso_point position;
-    key *key;
-    int32_t count;
-} ordering;
-
-static int key_less(const key *a, const key *b) {
+static int key_less(const iso_order_key *a, const iso_order_key *b) {
     if (a->object != b->object)
         return a->object < b->object;
     if (a->group != b->group)
         return a->group < b->group;
+    if (a->phase != b->phase)
+        return a->phase < b->phase;
     if (a->rank != b->rank)
         return a->rank < b->rank;
     return a->path < b->path;
 }
 
-static void merge(key *to, const key *a, int32_t a_count, const key *b, int32_t b_count) {
+static void merge(iso_order_key *to, const iso_order_key *a, int32_t a_count,
+                  const iso_order_key *b, int32_t b_count) {
     int32_t i = 0, j = 0, k = 0;
     while (i < a_count && j < b_count)
         to[k++] = key_less(&b[j], &a[i]) ? b[j++] : a[i++];
@@ -41,23 +29,23 @@ static void merge(key *to, const key *a, int32_t a_count, const key *b, int32_t 
 }
 
 /* Merge sort, since layers usually come sorted, which one look shows. */
-static iso_status sort_keys(key *keys, int32_t count, iso_arena *scratch) {
+static iso_status sort_keys(iso_order_key *keys, int32_t count, iso_arena *scratch) {
     int sorted = 1;
     for (int32_t i = 1; i < count && sorted; i++)
         sorted = key_less(&keys[i - 1], &keys[i]);
     if (sorted)
         return ISO_OK;
     iso_arena_mark mark = iso_arena_get_mark(scratch);
-    key *other;
+    iso_order_key *other;
     ISO_TRY(ISO_PUSH(other, scratch, count));
-    key *from = keys, *to = other;
+    iso_order_key *from = keys, *to = other;
     for (int64_t width = 1; width < count; width *= 2) {
         for (int64_t i = 0; i < count; i += 2 * width) {
             int32_t a = (int32_t)(count - i < width ? count - i : width);
             int32_t b = (int32_t)(count - i - a < width ? count - i - a : width);
             merge(to + i, from + i, a, from + i + a, b);
         }
-        key *swap = from;
+        iso_order_key *swap = from;
         from = to;
         to = swap;
     }
@@ -67,39 +55,32 @@ static iso_status sort_keys(key *keys, int32_t count, iso_arena *scratch) {
     return ISO_OK;
 }
 
-static int32_t end_of_group(const ordering *o, int32_t begin) {
+static int same_group(const iso_order_key *a, const iso_order_key *b) {
+    return a->object == b->object && a->group == b->group;
+}
+
+static int32_t end_of_group(const iso_ordering *o, int32_t begin) {
     int32_t end = begin + 1;
-    while (end < o->count && o->key[end].object == o->key[begin].object &&
-           o->key[end].group == o->key[begin].group)
+    while (end < o->count && same_group(&o->key[end], &o->key[begin]))
         end++;
     return end;
 }
 
-static int32_t end_of_rank(const ordering *o, int32_t begin, int32_t group_end) {
+static int32_t end_of_phase(const iso_ordering *o, int32_t begin, int32_t group_end) {
     int32_t end = begin + 1;
-    while (end < group_end && o->key[end].rank == o->key[begin].rank)
+    while (end < group_end && o->key[end].phase == o->key[begin].phase)
         end++;
     return end;
 }
 
-static int64_t count_starts(const ordering *o, run r) {
-    int64_t starts = 0;
-    for (int32_t i = r.begin; i < r.end; i++) {
-        const iso_path *path = &o->in->path[o->key[i].path];
-        starts += path->closed ? path->count : path->count > 1 ? 2 : 1;
-    }
-    return starts;
+static int32_t end_of_rank(const iso_ordering *o, int32_t begin, int32_t phase_end) {
+    int32_t end = begin + 1;
+    while (end < phase_end && o->key[end].rank == o->key[begin].rank)
+        end++;
+    return end;
 }
 
-/* The vertices at which path `key` may begin. */
-static int32_t list_starts(iso_candidate *candidate, const ordering *o, int32_t k, int32_t owner) {
-    const iso_path *path = &o->in->path[o->key[k].path];
-    const iso_path_vertex *vertex = o->in->vertex + path->first;
-    int32_t step = path->closed || path->count < 2 ? 1 : path->count - 1, n = 0;
-    for (int32_t i = 0; i < path->count; i += step)
-        candidate[n++] = (iso_candidate){vertex[i].at, owner, i};
-    return n;
-}
+/* ---- copying ---- */
 
 static void copy_rotated(iso_path_vertex *to, const iso_path_vertex *from, int32_t count,
                          int32_t start) {
@@ -111,30 +92,63 @@ static void copy_rotated(iso_path_vertex *to, const iso_path_vertex *from, int32
  * keeps its own, which is never drawn: so reversing twice changes nothing. */
 static void copy_reversed(iso_path_vertex *to, const iso_path_vertex *from, int32_t count) {
     for (int32_t i = 0; i < count; i++) {
-        to[i] = from[count - 1 - i];
-        int32_t bead = i + 1 < count ? count - 2 - i : count - 1;
-        to[i].width = from[bead].width;
-        to[i].area = from[bead].area;
-        to[i].role = from[bead].role;
+        to[i] = from[i + 1 < count ? count - 2 - i : count - 1];
+        to[i].at = from[count - 1 - i].at;
+        to[i].z = from[count - 1 - i].z;
     }
 }
 
-static void emit(ordering *o, int32_t k, int32_t start) {
-    const iso_path *path = &o->in->path[o->key[k].path];
-    const iso_path_vertex *from = o->in->vertex + path->first;
-    iso_path_vertex *to = o->out->vertex + o->out->vertex_count;
+static iso_path_vertex *begin_copy(iso_ordering *o, int32_t k) {
     iso_path *copy = &o->out->path[o->out->count++];
-    *copy = *path;
+    *copy = *ordering_path(o, k);
     copy->first = o->out->vertex_count;
+    return o->out->vertex + copy->first;
+}
+
+static void end_copy(iso_ordering *o) {
+    const iso_path *copy = &o->out->path[o->out->count - 1];
+    o->out->vertex_count += copy->count;
+    o->position = o->out->vertex[copy->first + (copy->closed ? 0 : copy->count - 1)].at;
+}
+
+void ordering_emit(iso_ordering *o, int32_t k, int32_t start) {
+    const iso_path *path = ordering_path(o, k);
+    const iso_path_vertex *from = ordering_vertex(o, k);
+    iso_path_vertex *to = begin_copy(o, k);
     if (path->closed)
         copy_rotated(to, from, path->count, start);
     else if (start > 0)
         copy_reversed(to, from, path->count);
     else
         memcpy(to, from, (size_t)path->count * sizeof *to);
-    o->out->vertex_count += path->count;
-    o->position = path->closed ? to[0].at : to[path->count - 1].at;
+    end_copy(o);
 }
+
+/* A seam nearer to a vertex than this begins there: 10 um. */
+enum { AT_VERTEX = 100 };
+
+void ordering_emit_from(iso_ordering *o, int32_t k, iso_seam_place seam) {
+    const int64_t near = (int64_t)AT_VERTEX * AT_VERTEX;
+    const iso_path_vertex *from = ordering_vertex(o, k);
+    int32_t count = ordering_path(o, k)->count, i = seam.vertex;
+    int32_t next = i + 1 < count ? i + 1 : 0;
+    if (iso_distance_squared(from[i].at, seam.at) <= near) {
+        ordering_emit(o, k, i);
+        return;
+    }
+    if (iso_distance_squared(from[next].at, seam.at) <= near) {
+        ordering_emit(o, k, next);
+        return;
+    }
+    iso_path_vertex *to = begin_copy(o, k);
+    to[0] = from[i];
+    to[0].at = seam.at;
+    copy_rotated(to + 1, from, count, next);
+    o->out->path[o->out->count - 1].count++;
+    end_copy(o);
+}
+
+/* ---- the nearest next ---- */
 
 static iso_status too_many(void) {
     return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
@@ -143,25 +157,58 @@ static iso_status too_many(void) {
 /* Few paths, or groups, are looked through start by start; a grid would cost more to fill. */
 enum { FEW = 8 };
 
+/* A path may begin at every so many of its vertices; one whose seam is decided, there only. */
+static int32_t step_of(const iso_path *path) {
+    return path->closed || path->count < 2 ? 1 : path->count - 1;
+}
+
+static int64_t count_starts(const iso_ordering *o, iso_run r) {
+    int64_t starts = 0;
+    for (int32_t k = r.begin; k < r.end; k++) {
+        const iso_path *path = ordering_path(o, k);
+        starts += o->placed[o->key[k].path] ? 1 : path->closed ? path->count : 2;
+    }
+    return starts;
+}
+
+static int32_t list_starts(iso_candidate *candidate, const iso_ordering *o, int32_t k,
+                           int32_t owner) {
+    const iso_path *path = ordering_path(o, k);
+    const iso_path_vertex *vertex = ordering_vertex(o, k);
+    int32_t n = 0, p = o->key[k].path;
+    if (o->placed[p]) {
+        candidate[0] = (iso_candidate){o->seam[p].at, owner, 0};
+        return 1;
+    }
+    for (int32_t i = 0; i < path->count; i += step_of(path))
+        candidate[n++] = (iso_candidate){vertex[i].at, owner, i};
+    return n;
+}
+
 typedef struct start {
     int64_t distance;
     int32_t key, vertex;
 } start;
 
-static void look_at_starts(start *best, const ordering *o, int32_t k) {
-    const iso_path *path = &o->in->path[o->key[k].path];
-    const iso_path_vertex *vertex = o->in->vertex + path->first;
-    int32_t step = path->closed || path->count < 2 ? 1 : path->count - 1;
-    for (int32_t i = 0; i < path->count; i += step) {
-        int64_t dx = (int64_t)vertex[i].at.x - o->position.x;
-        int64_t dy = (int64_t)vertex[i].at.y - o->position.y;
-        int64_t distance = dx * dx + dy * dy;
-        if (distance < best->distance)
-            *best = (start){distance, k, i};
-    }
+static void look_at(start *best, const iso_ordering *o, int32_t k, iso_point at, int32_t vertex) {
+    int64_t distance = iso_distance_squared(at, o->position);
+    if (distance < best->distance)
+        *best = (start){distance, k, vertex};
 }
 
-static void order_few(ordering *o, run r) {
+static void look_at_starts(start *best, const iso_ordering *o, int32_t k) {
+    const iso_path *path = ordering_path(o, k);
+    const iso_path_vertex *vertex = ordering_vertex(o, k);
+    int32_t p = o->key[k].path;
+    if (o->placed[p]) {
+        look_at(best, o, k, o->seam[p].at, 0);
+        return;
+    }
+    for (int32_t i = 0; i < path->count; i += step_of(path))
+        look_at(best, o, k, vertex[i].at, i);
+}
+
+static void order_few(iso_ordering *o, iso_run r) {
     unsigned done = 0;
     for (int32_t n = r.begin; n < r.end; n++) {
         start best = {INT64_MAX, r.begin, 0};
@@ -169,11 +216,11 @@ static void order_few(ordering *o, run r) {
             if (!(done >> (k - r.begin) & 1))
                 look_at_starts(&best, o, k);
         done |= 1u << (best.key - r.begin);
-        emit(o, best.key, best.vertex);
+        ordering_emit(o, best.key, best.vertex);
     }
 }
 
-static iso_status order_rank(ordering *o, run r) {
+iso_status ordering_nearest(iso_ordering *o, iso_run r) {
     if (r.end - r.begin <= FEW) {
         order_few(o, r);
         return ISO_OK;
@@ -192,27 +239,83 @@ static iso_status order_rank(ordering *o, run r) {
     const iso_candidate *best;
     while ((best = iso_nearest_find(&nearest, o->position))) {
         int32_t owner = best->owner;
-        emit(o, r.begin + owner, best->name);
+        ordering_emit(o, r.begin + owner, best->name);
         iso_nearest_take(&nearest, owner);
     }
     iso_arena_pop(o->scratch, mark);
     return ISO_OK;
 }
 
-static iso_status order_group(ordering *o, run group) {
-    for (int32_t begin = group.begin; begin < group.end;) {
-        int32_t end = end_of_rank(o, begin, group.end);
-        ISO_TRY(order_rank(o, (run){begin, end}));
+iso_status ordering_tour(iso_ordering *o, iso_run r) {
+    iso_arena_mark mark = iso_arena_get_mark(o->scratch);
+    int32_t count = r.end - r.begin, *tour;
+    iso_stop *stop;
+    ISO_TRY(ISO_PUSH(stop, o->scratch, count));
+    ISO_TRY(ISO_PUSH(tour, o->scratch, count));
+    for (int32_t k = 0; k < count; k++) {
+        const iso_path_vertex *vertex = ordering_vertex(o, r.begin + k);
+        int32_t last = ordering_path(o, r.begin + k)->count - 1;
+        stop[k] = (iso_stop){vertex[0].at, vertex[last].at};
+    }
+    ISO_TRY(iso_tour_nearest(tour, stop, count, o->position, o->scratch));
+    ISO_TRY(iso_tour_improve(tour, stop, count, o->position, &o->options->cost, o->scratch));
+    for (int32_t n = 0; n < count; n++) {
+        int32_t k = r.begin + (tour[n] >> 1);
+        ordering_emit(o, k, tour[n] & 1 ? ordering_path(o, k)->count - 1 : 0);
+    }
+    iso_arena_pop(o->scratch, mark);
+    return ISO_OK;
+}
+
+/* ---- groups ---- */
+
+static iso_status order_ranks(iso_ordering *o, iso_run phase) {
+    for (int32_t begin = phase.begin; begin < phase.end;) {
+        int32_t end = end_of_rank(o, begin, phase.end);
+        ISO_TRY(ordering_nearest(o, (iso_run){begin, end}));
         begin = end;
     }
     return ISO_OK;
 }
 
-static run lowest_rank(const ordering *o, run group) {
-    return (run){group.begin, end_of_rank(o, group.begin, group.end)};
+/* Where a closed path of the fill begins depends on where the nozzle comes from, so a tour can't
+ * plan with it. */
+static iso_status order_fill(iso_ordering *o, iso_run fill) {
+    for (int32_t k = fill.begin; k < fill.end; k++)
+        if (ordering_path(o, k)->closed)
+            return ordering_nearest(o, fill);
+    return ordering_tour(o, fill);
 }
 
-static iso_status order_few_groups(ordering *o, const run *group, int32_t groups) {
+static iso_status order_phase(iso_ordering *o, iso_run phase) {
+    switch (o->key[phase.begin].phase) {
+    case PHASE_WALLS:
+        return ordering_walls(o, phase);
+    case PHASE_EARLY_FILL:
+    case PHASE_FILL:
+        return order_fill(o, phase);
+    default:
+        return order_ranks(o, phase);
+    }
+}
+
+static iso_status order_group(iso_ordering *o, iso_run group) {
+    for (int32_t begin = group.begin; begin < group.end;) {
+        int32_t end = end_of_phase(o, begin, group.end);
+        ISO_TRY(order_phase(o, (iso_run){begin, end}));
+        begin = end;
+    }
+    return ISO_OK;
+}
+
+/* What of a group may come first. Of walls that is any, as far as can be told from here. */
+static iso_run entries(const iso_ordering *o, iso_run group) {
+    int32_t end = end_of_phase(o, group.begin, group.end);
+    int all = o->key[group.begin].phase == PHASE_FILL || o->key[group.begin].phase == PHASE_WALLS;
+    return (iso_run){group.begin, all ? end : end_of_rank(o, group.begin, end)};
+}
+
+static iso_status order_few_groups(iso_ordering *o, const iso_run *group, int32_t groups) {
     unsigned done = 0;
     for (int32_t n = 0; n < groups; n++) {
         start best = {INT64_MAX, 0, 0};
@@ -220,7 +323,7 @@ static iso_status order_few_groups(ordering *o, const run *group, int32_t groups
         for (int32_t g = 0; g < groups; g++) {
             if (done >> g & 1)
                 continue;
-            run r = lowest_rank(o, group[g]);
+            iso_run r = entries(o, group[g]);
             int64_t before = best.distance;
             for (int32_t k = r.begin; k < r.end && groups - n > 1; k++)
                 look_at_starts(&best, o, k);
@@ -233,19 +336,19 @@ static iso_status order_few_groups(ordering *o, const run *group, int32_t groups
     return ISO_OK;
 }
 
-/* A group is as near as the nearest start of its lowest rank. */
-static iso_status order_many_groups(ordering *o, const run *group, int32_t groups) {
+/* A group is as near as the nearest start of what may come first in it. */
+static iso_status order_many_groups(iso_ordering *o, const iso_run *group, int32_t groups) {
     int64_t starts = 0;
     int32_t n = 0;
     for (int32_t g = 0; g < groups; g++)
-        starts += count_starts(o, lowest_rank(o, group[g]));
+        starts += count_starts(o, entries(o, group[g]));
     if (starts > INT32_MAX)
         return too_many();
     iso_candidate *candidate;
     iso_nearest nearest;
     ISO_TRY(ISO_PUSH(candidate, o->scratch, starts));
     for (int32_t g = 0; g < groups; g++) {
-        run r = lowest_rank(o, group[g]);
+        iso_run r = entries(o, group[g]);
         for (int32_t k = r.begin; k < r.end; k++)
             n += list_starts(candidate + n, o, k, g);
     }
@@ -259,40 +362,102 @@ static iso_status order_many_groups(ordering *o, const run *group, int32_t group
     return ISO_OK;
 }
 
-static iso_status order_groups(ordering *o) {
-    run *group;
+/* Skirts before all else: they are there to get the nozzle going. */
+static iso_status order_groups(iso_ordering *o) {
+    iso_run *group;
     int32_t groups = 0;
     ISO_TRY(ISO_PUSH(group, o->scratch, o->count));
-    for (int32_t begin = 0; begin < o->count; begin = group[groups++].end)
-        group[groups] = (run){begin, end_of_group(o, begin)};
+    for (int32_t begin = 0, end; begin < o->count; begin = end) {
+        iso_run whole = {begin, end = end_of_group(o, begin)};
+        if (o->key[begin].phase == PHASE_SKIRT)
+            ISO_TRY(order_group(o, whole));
+        else
+            group[groups++] = whole;
+    }
     return groups <= FEW ? order_few_groups(o, group, groups) : order_many_groups(o, group, groups);
 }
 
-static iso_status order(ordering *o) {
+/* ---- the layer ---- */
+
+static int32_t phase_of(iso_role role, int infill_first) {
+    switch (role) {
+    case ISO_ROLE_SKIRT:
+        return PHASE_SKIRT;
+    case ISO_ROLE_SUPPORT:
+        return PHASE_SUPPORT;
+    case ISO_ROLE_SUPPORT_INTERFACE:
+        return PHASE_INTERFACE;
+    case ISO_ROLE_EXTERNAL_PERIMETER:
+    case ISO_ROLE_PERIMETER:
+    case ISO_ROLE_OVERHANG_PERIMETER:
+        return PHASE_WALLS;
+    case ISO_ROLE_INTERNAL_INFILL:
+    case ISO_ROLE_SOLID_INFILL:
+    case ISO_ROLE_TOP_SOLID_INFILL:
+    case ISO_ROLE_BRIDGE_INFILL:
+    case ISO_ROLE_GAP_FILL:
+        return infill_first ? PHASE_EARLY_FILL : PHASE_FILL;
+    case ISO_ROLE_IRONING:
+        return PHASE_IRONING;
+    default:
+        return PHASE_REST;
+    }
+}
+
+static iso_status order(iso_ordering *o) {
     iso_paths *out = o->out;
-    ISO_TRY(ISO_PUSH(o->key, o->scratch, o->in->count));
-    for (int32_t i = 0; i < o->in->count; i++) {
+    int32_t count = o->in->count;
+    ISO_TRY(ISO_PUSH(o->key, o->scratch, count));
+    ISO_TRY(ISO_PUSH(o->seam, o->scratch, count));
+    ISO_TRY(ISO_PUSH(o->placed, o->scratch, count));
+    memset(o->placed, 0, (size_t)count);
+    for (int32_t i = 0; i < count; i++) {
         const iso_path *path = &o->in->path[i];
+        int32_t phase = phase_of((iso_role)path->role, o->options->infill_first);
         if (path->count > 0)
-            o->key[o->count++] = (key){path->object, path->group, path->rank, i};
+            o->key[o->count++] = (iso_order_key){path->object, path->group, phase, path->rank, i};
     }
     if (o->count == 0)
         return ISO_OK;
-    ISO_TRY(ISO_GROW(out->path, out->path_capacity, o->in->count));
-    ISO_TRY(ISO_GROW(out->vertex, out->vertex_capacity, o->in->vertex_count));
+    if ((int64_t)o->in->vertex_count + count > INT32_MAX)
+        return too_many();
+    ISO_TRY(ISO_GROW(out->path, out->path_capacity, count));
+    ISO_TRY(ISO_GROW(out->vertex, out->vertex_capacity, (int64_t)o->in->vertex_count + count));
     ISO_TRY(sort_keys(o->key, o->count, o->scratch));
+    ISO_TRY(ordering_choose_seams(o));
     return order_groups(o);
 }
 
-iso_status iso_order_layer(iso_paths *out, const iso_paths *in, iso_point *position,
-                           iso_arena *scratch) {
+iso_order_options iso_order_defaults(void) {
+    return (iso_order_options){.seam = ISO_SEAM_NEAREST,
+                               .cost = {.speed = 150.0 * ISO_UNITS_PER_MM,
+                                        .acceleration = 1000.0 * ISO_UNITS_PER_MM,
+                                        .retraction = 0.18,
+                                        .retract_before = 2.0 * ISO_UNITS_PER_MM}};
+}
+
+void iso_order_state_free(iso_order_state *state) {
+    iso_seams_free(&state->seams);
+    *state = (iso_order_state){0};
+}
+
+iso_status iso_order_layer(iso_paths *out, const iso_paths *in, iso_order_state *state,
+                           const iso_order_options *options, iso_arena *scratch) {
     iso_arena_mark mark = iso_arena_get_mark(scratch);
-    ordering o = {.in = in, .out = out, .scratch = scratch, .position = *position};
+    iso_ordering o = {.in = in,
+                      .out = out,
+                      .scratch = scratch,
+                      .options = options,
+                      .seams = &state->seams,
+                      .position = state->position};
     iso_paths_clear(out);
+    iso_seams_next_layer(&state->seams);
     iso_status status = order(&o);
+    if (status == ISO_OK)
+        status = iso_travel_plan(out, state->position, options, scratch);
     iso_arena_pop(scratch, mark);
     if (status == ISO_OK)
-        *position = o.position;
+        state->position = o.position;
     else
         iso_paths_clear(out);
     return status;

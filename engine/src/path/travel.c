@@ -1,0 +1,136 @@
+#include "path/travel.h"
+
+#include <math.h>
+
+#include "path/ways.h"
+
+/* Edges of walls are owned by -1, those of a top surface by the path they are of: so what is
+ * already printed before path k are the owners 0 .. k - 1. */
+enum { WALL = -1 };
+
+typedef struct planning {
+    iso_paths *paths;
+    const iso_order_options *options;
+    iso_arena *scratch;
+    iso_edge_grid grid;
+    iso_ways ways;
+    int built;
+} planning;
+
+static int is_boundary(const iso_path *path) {
+    return path->role == ISO_ROLE_EXTERNAL_PERIMETER && path->closed && path->count > 2;
+}
+
+static int is_top(const iso_path *path) {
+    return path->role == ISO_ROLE_TOP_SOLID_INFILL || path->role == ISO_ROLE_IRONING;
+}
+
+static iso_point vertex_at(const planning *p, const iso_path *path, int32_t i) {
+    return p->paths->vertex[path->first + (i < path->count ? i : 0)].at;
+}
+
+static iso_status list_edges(planning *p) {
+    int64_t n = 0, bends = 0;
+    iso_path_edge *edge;
+    for (int32_t k = 0; k < p->paths->count; k++) {
+        const iso_path *path = &p->paths->path[k];
+        bends += is_boundary(path) ? path->count : 0;
+        n += is_boundary(path) || is_top(path) ? path->count : 0;
+    }
+    ISO_TRY(ISO_PUSH(edge, p->scratch, n));
+    ISO_TRY(iso_ways_new(&p->ways, &p->grid, (int32_t)bends, p->scratch));
+    p->ways.begin = WALL;
+    p->ways.end = WALL + 1;
+    n = 0;
+    for (int32_t k = 0; k < p->paths->count; k++) {
+        const iso_path *path = &p->paths->path[k];
+        int32_t segments = path->closed ? path->count : path->count - 1;
+        if (!is_boundary(path) && !is_top(path))
+            continue;
+        for (int32_t i = 0; i < segments; i++)
+            edge[n++] = (iso_path_edge){vertex_at(p, path, i), vertex_at(p, path, i + 1),
+                                        is_top(path) ? k : WALL};
+        for (int32_t i = 0; i < segments && is_boundary(path); i++)
+            iso_ways_add(&p->ways, vertex_at(p, path, i > 0 ? i - 1 : segments - 1),
+                         vertex_at(p, path, i), vertex_at(p, path, i + 1));
+    }
+    return iso_edge_grid_build(&p->grid, edge, (int32_t)n, p->scratch);
+}
+
+/* Only layers that travel far enough need it. */
+static iso_status build(planning *p) {
+    if (p->built)
+        return ISO_OK;
+    p->built = 1;
+    return list_edges(p);
+}
+
+static int spoils_top(const planning *p, iso_point a, iso_point b, int32_t k) {
+    return iso_edge_grid_meets(&p->grid, a, b, 0, k);
+}
+
+static double longest_way(const iso_order_options *options, double straight) {
+    double longest = INFINITY;
+    if (options->max_detour > 0)
+        longest = straight + options->max_detour;
+    if (options->max_detour_share > 0)
+        longest = straight * (1 + options->max_detour_share);
+    return longest;
+}
+
+/* The straight way is not inside. Returns whether there is one that is. */
+static iso_status go_around(planning *p, int32_t k, iso_point from, iso_point to, int *hidden) {
+    iso_paths *paths = p->paths;
+    iso_path *path = &paths->path[k];
+    double straight = sqrt((double)iso_distance_squared(from, to));
+    if (!iso_ways_find(&p->ways, from, to, longest_way(p->options, straight)))
+        return ISO_OK;
+    int32_t n = p->ways.points;
+    ISO_TRY(ISO_GROW(paths->travel, paths->travel_capacity, (int64_t)paths->travel_count + n));
+    path->travel_first = paths->travel_count;
+    path->travel_count = n;
+    *hidden = 1;
+    for (int32_t i = 0; i < n; i++) {
+        iso_point next = p->ways.point[i];
+        paths->travel[paths->travel_count++] = next;
+        *hidden &= !spoils_top(p, from, next, k);
+        from = next;
+    }
+    *hidden &= !spoils_top(p, from, to, k);
+    return ISO_OK;
+}
+
+static iso_status plan(planning *p, int32_t k, iso_point from) {
+    iso_path *path = &p->paths->path[k];
+    iso_point to = vertex_at(p, path, 0);
+    double limit = p->options->cost.retract_before;
+    int hidden = 0;
+    if ((double)iso_distance_squared(from, to) <= limit * limit)
+        return ISO_OK;
+    ISO_TRY(build(p));
+    if (iso_ways_is_inside(&p->ways, from, to))
+        hidden = !spoils_top(p, from, to, k);
+    else if (p->options->avoid_crossing)
+        ISO_TRY(go_around(p, k, from, to, &hidden));
+    path->retract =
+        hidden && p->options->retract_crossing_only ? ISO_RETRACT_NOT : ISO_RETRACT_IF_LONG;
+    return ISO_OK;
+}
+
+iso_status iso_travel_plan(iso_paths *paths, iso_point from, const iso_order_options *options,
+                           iso_arena *scratch) {
+    planning p = {.paths = paths, .options = options, .scratch = scratch};
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    iso_status status = ISO_OK;
+    if (!options->retract_crossing_only && !options->avoid_crossing)
+        return ISO_OK;
+    for (int32_t k = 0; k < paths->count && status == ISO_OK; k++) {
+        const iso_path *path = &paths->path[k];
+        if (path->count < 2)
+            continue; /* nothing is drawn, so the nozzle doesn't go there */
+        status = plan(&p, k, from);
+        from = vertex_at(&p, path, path->closed ? 0 : path->count - 1);
+    }
+    iso_arena_pop(scratch, mark);
+    return status;
+}
