@@ -16,25 +16,25 @@
 
 /* ---- one mesh, or several that keep their places to each other ---- */
 
-/* What is done to a model, in this order. Zero-initialised it does nothing. */
+/* What is done to a model, in the order of the members. Zero-initialised it does nothing. */
 typedef struct iso_transform {
     bool inches;      /* numbers are inches: 25.4 times as large */
     double scale;     /* factor; 0 counts as 1 */
-    iso_vec3 fit;     /* mm; the same factor on all axes, so that the box just fits; 0: any size */
-    bool mirror[3];   /* along x, y, z; triangles are turned along */
+    bool mirror[3];   /* by iso_axis; triangles are turned along */
     double rotate[3]; /* degrees counter-clockwise about X, then Y, then Z */
+    iso_vec3 fit;     /* mm; scaled again so that the box just fits; 0: any size will do */
 } iso_transform;
 
 /* Transform meshes together about the middle of their common box, which stays where it is. Mirrors
- * and turns by 90 degrees only swap and negate coordinates. ISO_USAGE: not finite, or a factor that
- * isn't above 0; ISO_OUTSIDE: the result is beyond 10 km. On failure the meshes are as before. */
+ * and turns by 90 degrees only swap and negate coordinates. ISO_USAGE: a number that isn't finite
+ * or is negative; ISO_OUTSIDE: the result is beyond 10 km. On failure the meshes are as before. */
 ISO_API iso_status iso_meshes_transform(iso_mesh *mesh, int32_t count,
                                         const iso_transform *transform) ISO_MUST_CHECK;
 
-/* Cut by the plane at z into two closed meshes; either destination may be NULL. Corners on the
- * plane belong to both, the caps are the same triangles turned. What has nothing on its side is an
- * empty mesh (triangle_count 0). `mesh` stays as it is. ISO_UNSLICEABLE: the section is no region
- * (the mesh cuts through itself there). */
+/* Cut by the plane at z into two closed meshes, whose volumes add up; either destination may be
+ * NULL. A corner on the plane is in both, if something of both hangs on it, and a flat face in the
+ * plane in the half that it bounds. What has nothing on its side is an empty mesh (triangle_count
+ * 0). `mesh` stays as it is. ISO_USAGE: z isn't finite. ISO_OUTSIDE: larger than 3.3 m. */
 ISO_API iso_status iso_mesh_cut(iso_mesh *lower, iso_mesh *upper, const iso_mesh *mesh,
                                 double z) ISO_MUST_CHECK;
 

@@ -220,29 +220,60 @@ static void judge(bool *turned, const nesting *n, const double *volume) {
     }
 }
 
-static iso_status find_inverted(bool *turned, nesting *n, const double *volume) {
+/* Sets count, nests and depth. */
+static iso_status find_nests(nesting *n, const double *volume) {
     ISO_TRY(ISO_ALLOCATE(n->probe, n->shells));
     ISO_TRY(ISO_ALLOCATE(n->by_x, n->shells));
     ISO_TRY(ISO_ALLOCATE(n->depth, n->shells));
-    ISO_TRY(ISO_ALLOCATE(n->inwards, n->shells));
-    memset(turned, 0, (size_t)n->shells * sizeof *turned);
     find_probes(n, volume);
     sort_by(n->by_x, n->shells, n, probe_before);
     ISO_TRY(find_hits(n));
     sum_hits(n);
+    return ISO_OK;
+}
+
+static iso_status find_inverted(bool *turned, nesting *n, const double *volume) {
+    ISO_TRY(ISO_ALLOCATE(n->inwards, n->shells));
+    memset(turned, 0, (size_t)n->shells * sizeof *turned);
+    ISO_TRY(find_nests(n, volume));
     sort_by(n->inwards, n->shells, n, depth_before);
     judge(turned, n, volume);
     return ISO_OK;
+}
+
+static void nesting_free(nesting *n) {
+    iso_release(n->probe);
+    iso_release(n->by_x);
+    iso_release(n->nests);
+    iso_release(n->depth);
+    iso_release(n->inwards);
 }
 
 iso_status iso_mesh_find_inverted(bool *turned, const iso_mesh *mesh, const int32_t *shell,
                                   const double *volume, int32_t shells) {
     nesting n = {.mesh = mesh, .shell = shell, .shells = shells};
     iso_status status = find_inverted(turned, &n, volume);
-    iso_release(n.probe);
-    iso_release(n.by_x);
-    iso_release(n.nests);
-    iso_release(n.depth);
-    iso_release(n.inwards);
+    nesting_free(&n);
+    return status;
+}
+
+/* Of all that are around a shell, the one with most around itself. */
+static void find_parents(int32_t *around, const nesting *n) {
+    for (int32_t i = 0; i < n->shells; i++)
+        around[i] = -1;
+    for (int64_t k = 0; k < n->count; k++) {
+        int32_t *parent = &around[n->nests[k].inner], outer = n->nests[k].around;
+        if (*parent < 0 || n->depth[outer] > n->depth[*parent])
+            *parent = outer;
+    }
+}
+
+iso_status iso_mesh_find_around(int32_t *around, const iso_mesh *mesh, const int32_t *shell,
+                                const double *volume, int32_t shells) {
+    nesting n = {.mesh = mesh, .shell = shell, .shells = shells};
+    iso_status status = find_nests(&n, volume);
+    if (status == ISO_OK)
+        find_parents(around, &n);
+    nesting_free(&n);
     return status;
 }

@@ -13,4 +13,9 @@
 iso_status iso_mesh_find_inverted(bool *turned, const iso_mesh *mesh, const int32_t *shell,
                                   const double *volume, int32_t shells) ISO_MUST_CHECK;
 
+/* The shell directly around each one, by its number, or -1. Shells are as find_inverted left them.
+ */
+iso_status iso_mesh_find_around(int32_t *around, const iso_mesh *mesh, const int32_t *shell,
+                                const double *volume, int32_t shells) ISO_MUST_CHECK;
+
 #endif
