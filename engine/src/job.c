@@ -188,6 +188,7 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
     int32_t index = job->begin + (int32_t)number;
     iso_layer *layer = window_layer(&job->window, index);
     settings_of_layer(&layer->settings, job->options, index, job->levels.height[index]);
+    layer->settings.sparse.z = iso_units(job->levels.cut[index]);
     return layer_outline(layer, &job->hand[worker], job->slices, job->model_count, index);
 }
 

@@ -150,18 +150,15 @@ typedef struct iso_filling {
 
 /* Inset each part of the region by half a spacing, for the middles of the lines, and fill it. */
 static iso_status fill_part(const iso_filling *f, const iso_region *part,
-                            const iso_fill_options *fill, int32_t count, int32_t group) {
+                            const iso_fill_options *fill, int32_t group) {
     iso_hand *hand = f->hand;
+    iso_fill_options grouped = *fill;
     iso_offset_options inset = iso_offset_defaults(-f->layer->settings.fill_inset);
     inset.join = ISO_JOIN_ROUND;
     ISO_TRY(iso_offset(&hand->inside, part, &inset, hand->planar));
     ISO_TRY(check(&hand->inside, hand));
-    for (int32_t pass = 0; pass < count; pass++) {
-        iso_fill_options grouped = fill[pass];
-        grouped.like.group = group;
-        ISO_TRY(iso_fill_rectilinear(&f->layer->paths, &hand->inside, &grouped, &hand->arena));
-    }
-    return ISO_OK;
+    grouped.like.group = group;
+    return iso_fill(&f->layer->paths, &hand->inside, &grouped, &hand->arena, hand->planar);
 }
 
 /* The group of a part: that of the area it lies in, or one of its own if rounding has put it just
@@ -178,15 +175,15 @@ static int32_t group_of(const iso_filling *f, const iso_region *region, const is
 }
 
 static iso_status fill_region(const iso_filling *f, const iso_region *region,
-                              const iso_fill_options *fill, int32_t count) {
+                              const iso_fill_options *fill) {
     iso_hand *hand = f->hand;
     iso_islands parts;
-    if (count == 0)
+    if (region->count == 0)
         return ISO_OK;
     ISO_TRY(islands_of(&parts, region, &hand->arena));
     for (int32_t i = 0; i < parts.count; i++) {
         ISO_TRY(island_copy(&hand->part, region, &parts, i));
-        ISO_TRY(fill_part(f, &hand->part, fill, count, group_of(f, region, &parts, i)));
+        ISO_TRY(fill_part(f, &hand->part, fill, group_of(f, region, &parts, i)));
     }
     return ISO_OK;
 }
@@ -206,7 +203,7 @@ static iso_status fill_bridges(const iso_filling *f) {
         if (!s->bridge_angle_given && f->beneath)
             ISO_TRY(iso_bridge_angle(&fill.angle, &hand->part, f->beneath, fill.angle,
                                      hand->planar));
-        ISO_TRY(fill_part(f, &hand->part, &fill, 1, group_of(f, bridges, &parts, i)));
+        ISO_TRY(fill_part(f, &hand->part, &fill, group_of(f, bridges, &parts, i)));
     }
     return ISO_OK;
 }
@@ -220,10 +217,10 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
     ISO_TRY(island_search_new(&search, &layer->area, &areas, &hand->arena));
     iso_filling filling = {layer, hand, &search, beneath ? &beneath->region : NULL};
     ISO_TRY(fill_bridges(&filling));
-    ISO_TRY(fill_region(&filling, &shell->lid, &s->lid, 1));
-    ISO_TRY(fill_region(&filling, &shell->top, &s->top, 1));
-    ISO_TRY(fill_region(&filling, &shell->solid, &s->solid, 1));
-    return fill_region(&filling, &shell->sparse, s->sparse, s->sparse_count);
+    ISO_TRY(fill_region(&filling, &shell->lid, &s->lid));
+    ISO_TRY(fill_region(&filling, &shell->top, &s->top));
+    ISO_TRY(fill_region(&filling, &shell->solid, &s->solid));
+    return s->has_sparse ? fill_region(&filling, &shell->sparse, &s->sparse) : ISO_OK;
 }
 
 iso_status layer_split(iso_layer *layer, iso_hand *hand, const iso_shell_neighbours *around) {
@@ -263,8 +260,11 @@ iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath
     double ready = iso_stage_clock();
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
     iso_filling all = {.layer = layer, .hand = hand};
-    iso_status status = shelled ? fill_shelled(layer, hand, beneath)
-                                : fill_region(&all, &layer->area, s->sparse, s->sparse_count);
+    iso_status status = ISO_OK;
+    if (shelled)
+        status = fill_shelled(layer, hand, beneath);
+    else if (s->has_sparse)
+        status = fill_region(&all, &layer->area, &s->sparse);
     iso_arena_pop(&hand->arena, mark);
     layer->seconds[ISO_STAGE_SHELLS] += ready - begun;
     layer->seconds[ISO_STAGE_FILL] = iso_stage_clock() - ready;

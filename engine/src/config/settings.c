@@ -48,6 +48,8 @@ static void set_walls(iso_layer_settings *s, const iso_options *options, bool fi
 static iso_fill_options fill_of(const iso_options *options, iso_role role, bool first,
                                 double height, double density) {
     iso_fill_options fill = iso_fill_defaults(bead_of(options, role, first, height), density);
+    iso_vec2 center = iso_options_center(options);
+    fill.origin = (iso_point){iso_units(center.x), iso_units(center.y)};
     fill.angle = options->fill_angle;
     fill.like.role = (uint8_t)role;
     fill.like.rank = options->perimeters;
@@ -65,24 +67,34 @@ static int32_t overlap_of(const iso_layer_settings *s, const iso_options *option
     return overlap < innermost->spacing ? overlap : innermost->spacing;
 }
 
-/* Layers take turns of 90 degrees. At full density lines are fitted to each part; sparse ones keep
- * their place from layer to layer. A grid is two passes of half the density, both on every layer.
+static void set_pattern(iso_fill_options *fill, int32_t pattern, int32_t index) {
+    bool gives_way = fill->density >= 1 && !iso_fill_pattern_is_solid((iso_fill_pattern)pattern);
+    fill->pattern = gives_way ? ISO_PATTERN_RECTILINEAR : pattern;
+    fill->angle += iso_fill_pattern_turn((iso_fill_pattern)fill->pattern, index);
+    fill->layer = index;
+}
+
+/* At full density lines are fitted to each part; sparse ones keep their place from layer to layer.
  */
 static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                      double height) {
-    double density = options->fill_density / 100, turn = 90 * (index & 1);
-    bool full = density >= 1, grid = options->fill_pattern == ISO_PATTERN_GRID && !full;
+    double density = options->fill_density / 100;
+    bool full = density >= 1;
     iso_role role = full ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL;
     iso_bead solid = bead_of(options, ISO_ROLE_SOLID_INFILL, first, height);
     s->top = fill_of(options, ISO_ROLE_TOP_SOLID_INFILL, first, height, 1);
     s->solid = fill_of(options, ISO_ROLE_SOLID_INFILL, first, height, 1);
-    s->top.angle += turn;
-    s->solid.angle += turn;
-    s->sparse_count = density <= 0 ? 0 : grid ? 2 : 1;
-    for (int32_t pass = 0; pass < s->sparse_count; pass++) {
-        s->sparse[pass] = fill_of(options, role, first, height, density / s->sparse_count);
-        s->sparse[pass].angle += grid ? 90 * pass : turn;
-        s->sparse[pass].like.rank += pass;
+    set_pattern(&s->top, options->top_fill_pattern, index);
+    set_pattern(&s->solid, first ? options->bottom_fill_pattern : ISO_PATTERN_RECTILINEAR, index);
+    s->has_sparse = density > 0;
+    if (s->has_sparse) {
+        s->sparse = fill_of(options, role, first, height, density);
+        set_pattern(&s->sparse, options->fill_pattern, index);
+    }
+    if (s->has_sparse && !full) {
+        double width = iso_options_width(options, role, first, height);
+        s->sparse.anchor = iso_units(iso_relative_of(options->infill_anchor, width));
+        s->sparse.link_max = iso_units(iso_relative_of(options->infill_anchor_max, width));
     }
     s->fill_inset = solid.spacing / 2;
     s->wall.fill_inset = -overlap_of(s, options, first, height);

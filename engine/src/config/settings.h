@@ -19,8 +19,8 @@ typedef struct iso_layer_settings {
     int32_t bridge_angle_given;    /* else each bridge has its own */
     int32_t lid_least;             /* units; see iso_shell_find_lids; 0: no lids */
     iso_overhang_options overhang; /* reach 0: none */
-    int32_t sparse_count;          /* passes over the same area */
-    iso_fill_options sparse[2];
+    int32_t has_sparse;            /* else the area within the shells stays empty */
+    iso_fill_options sparse;       /* .z is not set */
     int32_t skirt_loops;    /* first layer only */
     int32_t skirt_distance; /* units, to the middle of the innermost loop */
     iso_bead skirt;
