@@ -319,8 +319,9 @@ ISO_OPTION(wipe, BOOL, "0", "", 0, 1, "Retraction",
            "Move back along the printed path while the filament is drawn back.")
 ISO_OPTION(retract_before_wipe, PERCENT, "0%", "%", 0, 100, "Retraction",
            "Share of retract_length that is drawn back before the wipe begins.")
-ISO_OPTION(only_retract_when_crossing_perimeters, BOOL, "0", "", 0, 1, "Retraction",
-           "No retraction on travel moves that stay inside the part.")
+ISO_OPTION(only_retract_when_crossing_perimeters, BOOL, "1", "", 0, 1, "Retraction",
+           "No retraction on travel moves inside the part, where nothing that drips is seen; they "
+           "take a way around walls if that is quicker than a retraction.")
 ISO_OPTION(avoid_crossing_perimeters, BOOL, "0", "", 0, 1, "Retraction",
            "Lead travel moves around walls instead of across them.")
 ISO_OPTION(avoid_crossing_perimeters_max_detour, RELATIVE, "0", "mm", 0, 10000, "Retraction",

@@ -69,34 +69,66 @@ static int spoils_top(const planning *p, iso_point a, iso_point b, int32_t k) {
     return iso_edge_grid_meets(&p->grid, a, b, 0, k);
 }
 
-static double longest_way(const iso_order_options *options, double straight) {
-    double longest = INFINITY;
-    if (options->max_detour > 0)
-        longest = straight + options->max_detour;
-    if (options->max_detour_share > 0)
-        longest = straight * (1 + options->max_detour_share);
-    return longest;
+/* Of a run of so many seconds. */
+static double length_of_run(const iso_travel_cost *cost, double seconds) {
+    double ramps = cost->speed / cost->acceleration;
+    return seconds < 2 * ramps ? cost->acceleration * seconds * seconds / 4
+                               : (seconds - ramps) * cost->speed;
 }
 
-/* The straight way is not inside. Returns whether there is one that is. */
+/* As far as the options allow to go around, or else as far as pays: a retraction takes time, too.
+ */
+static double longest_way(const iso_order_options *options, iso_point from, iso_point to) {
+    double straight = sqrt((double)iso_distance_squared(from, to));
+    if (!options->avoid_crossing)
+        return length_of_run(&options->cost, iso_travel_seconds(&options->cost, from, to));
+    if (options->max_detour > 0)
+        return straight + options->max_detour;
+    if (options->max_detour_share > 0)
+        return straight * (1 + options->max_detour_share);
+    return INFINITY;
+}
+
+/* As if the nozzle stopped at every bend. */
+static double seconds_of_way(const planning *p, iso_point from, iso_point to) {
+    iso_travel_cost run = p->options->cost;
+    double sum = 0;
+    run.retraction = 0;
+    for (int32_t i = 0; i < p->ways.points; i++) {
+        sum += iso_travel_seconds(&run, from, p->ways.point[i]);
+        from = p->ways.point[i];
+    }
+    return sum + iso_travel_seconds(&run, from, to);
+}
+
+static int way_is_hidden(const planning *p, iso_point from, iso_point to, int32_t k) {
+    for (int32_t i = 0; i < p->ways.points; i++) {
+        if (spoils_top(p, from, p->ways.point[i], k))
+            return 0;
+        from = p->ways.point[i];
+    }
+    return !spoils_top(p, from, to, k);
+}
+
+/* The straight way is not inside: take one that is. */
 static iso_status go_around(planning *p, int32_t k, iso_point from, iso_point to, int *hidden) {
     iso_paths *paths = p->paths;
     iso_path *path = &paths->path[k];
-    double straight = sqrt((double)iso_distance_squared(from, to));
-    if (!iso_ways_find(&p->ways, from, to, longest_way(p->options, straight)))
+    if (!iso_ways_find(&p->ways, from, to, longest_way(p->options, from, to)))
         return ISO_OK;
+    *hidden = way_is_hidden(p, from, to, k);
+    if (!p->options->avoid_crossing &&
+        (!*hidden ||
+         seconds_of_way(p, from, to) > iso_travel_seconds(&p->options->cost, from, to))) {
+        *hidden = 0;
+        return ISO_OK;
+    }
     int32_t n = p->ways.points;
     ISO_TRY(ISO_GROW(paths->travel, paths->travel_capacity, (int64_t)paths->travel_count + n));
     path->travel_first = paths->travel_count;
     path->travel_count = n;
-    *hidden = 1;
-    for (int32_t i = 0; i < n; i++) {
-        iso_point next = p->ways.point[i];
-        paths->travel[paths->travel_count++] = next;
-        *hidden &= !spoils_top(p, from, next, k);
-        from = next;
-    }
-    *hidden &= !spoils_top(p, from, to, k);
+    for (int32_t i = 0; i < n; i++)
+        paths->travel[paths->travel_count++] = p->ways.point[i];
     return ISO_OK;
 }
 
@@ -110,7 +142,7 @@ static iso_status plan(planning *p, int32_t k, iso_point from) {
     ISO_TRY(build(p));
     if (iso_ways_is_inside(&p->ways, from, to))
         hidden = !spoils_top(p, from, to, k);
-    else if (p->options->avoid_crossing)
+    else
         ISO_TRY(go_around(p, k, from, to, &hidden));
     path->retract =
         hidden && p->options->retract_crossing_only ? ISO_RETRACT_NOT : ISO_RETRACT_IF_LONG;

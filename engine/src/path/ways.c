@@ -8,6 +8,7 @@ iso_status iso_ways_new(iso_ways *ways, const iso_edge_grid *grid, int32_t verti
                         iso_arena *scratch) {
     *ways = (iso_ways){.grid = grid};
     ISO_TRY(ISO_PUSH(ways->bend, scratch, vertices));
+    ISO_TRY(ISO_PUSH(ways->near, scratch, vertices));
     ISO_TRY(ISO_PUSH(ways->length, scratch, (int64_t)vertices + 1));
     ISO_TRY(ISO_PUSH(ways->back, scratch, (int64_t)vertices + 1));
     ISO_TRY(ISO_PUSH(ways->settled, scratch, (int64_t)vertices + 1));
@@ -46,61 +47,85 @@ static int is_tangent(const iso_bend *bend, iso_point p) {
     return (a >= 0 && b >= 0) || (a <= 0 && b <= 0);
 }
 
-/* From node u, `count` standing for where the way begins, to bend v or, if v = count, its end. */
-static int leads(const iso_ways *ways, int32_t u, int32_t v, iso_point from, iso_point to) {
-    const iso_bend *a = u < ways->count ? &ways->bend[u] : NULL;
-    const iso_bend *b = v < ways->count ? &ways->bend[v] : NULL;
-    iso_point p = a ? a->at : from, q = b ? b->at : to;
-    if (a && b)
-        return sees(ways, p, q);
-    return iso_ways_is_inside(ways, p, q);
+/* The bend of node u, or NULL for the ends of the way. */
+static const iso_bend *bend_of(const iso_ways *ways, int32_t u) {
+    return u >= 0 && u < ways->nears ? &ways->bend[ways->near[u]] : NULL;
+}
+
+static int leads(const iso_ways *ways, const iso_bend *a, const iso_bend *b, iso_point from,
+                 iso_point to) {
+    return a && b ? sees(ways, a->at, b->at)
+                  : iso_ways_is_inside(ways, a ? a->at : from, b ? b->at : to);
 }
 
 static void unwind(iso_ways *ways) {
     int32_t n = 0;
-    for (int32_t v = ways->back[ways->count]; v >= 0; v = ways->back[v])
+    for (int32_t v = ways->back[ways->nears]; v >= 0; v = ways->back[v])
         n++;
     ways->points = n;
-    for (int32_t v = ways->back[ways->count]; v >= 0; v = ways->back[v])
-        ways->point[--n] = ways->bend[v].at;
+    for (int32_t v = ways->back[ways->nears]; v >= 0; v = ways->back[v])
+        ways->point[--n] = bend_of(ways, v)->at;
 }
 
 static void relax(iso_ways *ways, int32_t u, iso_point from, iso_point to, double longest) {
-    const iso_bend *a = u < ways->count ? &ways->bend[u] : NULL;
+    const iso_bend *a = bend_of(ways, u);
     double so_far = a ? ways->length[u] : 0;
     iso_point p = a ? a->at : from;
-    for (int32_t v = 0; v <= ways->count; v++) {
-        const iso_bend *b = v < ways->count ? &ways->bend[v] : NULL;
-        if (ways->settled[v] || (a && !is_tangent(a, b ? b->at : to)) || (b && !is_tangent(b, p)))
+    for (int32_t v = 0; v <= ways->nears; v++) {
+        const iso_bend *b = bend_of(ways, v);
+        iso_point q = b ? b->at : to;
+        if (ways->settled[v] || (a && !is_tangent(a, q)) || (b && !is_tangent(b, p)))
             continue;
-        double length = so_far + distance(p, b ? b->at : to);
-        if (length >= ways->length[v] || length + (b ? distance(b->at, to) : 0) > longest)
+        double length = so_far + distance(p, q);
+        if (length >= ways->length[v] || length + (b ? distance(q, to) : 0) > longest)
             continue;
-        if (!leads(ways, u, v, from, to))
+        if (!leads(ways, a, b, from, to))
             continue;
         ways->length[v] = length;
-        ways->back[v] = a ? u : -1;
+        ways->back[v] = u;
     }
 }
 
+/* Those in the ellipse of the allowed length; a box around it sorts out most of the others. */
+static void find_near(iso_ways *ways, iso_point from, iso_point to, double longest) {
+    double x = ((double)from.x + to.x) / 2, y = ((double)from.y + to.y) / 2, reach = longest / 2;
+    ways->nears = 0;
+    for (int32_t i = 0; i < ways->count; i++) {
+        iso_point p = ways->bend[i].at;
+        if (p.x < x - reach || p.x > x + reach || p.y < y - reach || p.y > y + reach)
+            continue;
+        if (distance(from, p) + distance(p, to) <= longest)
+            ways->near[ways->nears++] = i;
+    }
+}
+
+/* The unsettled node with the shortest way through it, if it went on straight; -1: none. */
+static int32_t next_node(const iso_ways *ways, iso_point to) {
+    double least = INFINITY;
+    int32_t best = -1;
+    for (int32_t v = 0; v <= ways->nears; v++) {
+        const iso_bend *b = bend_of(ways, v);
+        if (ways->settled[v] || ways->length[v] == INFINITY)
+            continue;
+        double through = ways->length[v] + (b ? distance(b->at, to) : 0);
+        if (through < least) {
+            least = through;
+            best = v;
+        }
+    }
+    return best;
+}
+
 int iso_ways_find(iso_ways *ways, iso_point from, iso_point to, double longest) {
-    int32_t n = ways->count;
+    find_near(ways, from, to, longest);
+    int32_t n = ways->nears, u = -1;
     for (int32_t v = 0; v <= n; v++) {
         ways->length[v] = INFINITY;
         ways->settled[v] = 0;
     }
-    int64_t steps = STEPS_MAX;
-    for (int32_t u = n; steps > 0; steps -= 2 * (int64_t)n + LOOK) {
+    for (int64_t steps = STEPS_MAX; steps > 0; steps -= 2 * (int64_t)n + LOOK) {
         relax(ways, u, from, to, longest);
-        double least = INFINITY;
-        u = -1;
-        for (int32_t v = 0; v <= n; v++) {
-            double f = ways->length[v] + (v < n ? distance(ways->bend[v].at, to) : 0);
-            if (!ways->settled[v] && f < least) {
-                least = f;
-                u = v;
-            }
-        }
+        u = next_node(ways, to);
         if (u < 0)
             return 0;
         if (u == n) {

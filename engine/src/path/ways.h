@@ -14,10 +14,12 @@ typedef struct iso_ways {
     int32_t begin, end; /* owners of the edges that bound the inside */
     iso_bend *bend;     /* [count] */
     int32_t count;
-    double *length;   /* [count + 1] of the way so far, units; at the end: `to` */
-    int32_t *back;    /* [count + 1] the bend before; -1: `from` */
-    uint8_t *settled; /* [count + 1] */
-    iso_point *point; /* [count + 1] of the way found last */
+    int32_t *near; /* [nears] bends that a way of the allowed length may reach */
+    int32_t nears;
+    double *length;   /* [nears + 1] of the way so far, units; at the end: `to` */
+    int32_t *back;    /* [nears + 1] the bend before; -1: `from` */
+    uint8_t *settled; /* [nears + 1] */
+    iso_point *point; /* [nears] of the way found last */
     int32_t points;
 } iso_ways;
 
