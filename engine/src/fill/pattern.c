@@ -23,8 +23,8 @@ double iso_fill_pattern_turn(iso_fill_pattern pattern, int32_t index) {
     case ISO_PATTERN_MONOTONIC:
     case ISO_PATTERN_LINE:
         return 90 * (index & 1);
-    case ISO_PATTERN_HONEYCOMB: /* the same cells, but other walls of theirs are doubled */
-        return 60 * (index % 3);
+    case ISO_PATTERN_HONEYCOMB: /* the same cells, but other walls of theirs are drawn twice */
+        return 120 * (index % 3);
     default:
         return 0;
     }
@@ -32,7 +32,8 @@ double iso_fill_pattern_turn(iso_fill_pattern pattern, int32_t index) {
 
 double iso_pattern_frame(iso_fill_pattern pattern) {
     switch (pattern) {
-    case ISO_PATTERN_GYROID: /* its waves run along the diagonals of its cells */
+    case ISO_PATTERN_GYROID: /* what looks like its direction is a diagonal of its frame */
+    case ISO_PATTERN_HONEYCOMB_3D:
         return -45;
     default:
         return 0;

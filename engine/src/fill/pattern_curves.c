@@ -127,40 +127,40 @@ static double gyroid_at(const gyroid *g, double x, int second) {
     return turn + (second ? -apart : apart);
 }
 
-enum { GYROID_PARTS = 8, GYROID_HALVINGS = 5, GYROID_MAX = (GYROID_PARTS << GYROID_HALVINGS) + 1 };
+enum { SAMPLES_MAX = 512 };
 
 typedef struct wave {
     int32_t count;
-    double x[GYROID_MAX], y[GYROID_MAX];
+    double x[SAMPLES_MAX + 1], y[SAMPLES_MAX + 1];
 } wave;
 
-/* Points up to x1, y1, close enough that chords are within the tolerance. */
-static void refine(wave *w, const gyroid *g, int second, const double end[2], double tolerance,
-                   int depth) {
-    double x0 = w->x[w->count - 1], y0 = w->y[w->count - 1];
-    double middle[2] = {(x0 + end[0]) / 2, 0};
-    middle[1] = gyroid_at(g, middle[0], second);
-    double dx = end[0] - x0, dy = end[1] - y0;
-    double off = dx * (middle[1] - y0) - dy * (middle[0] - x0);
-    if (depth > 0 && fabs(off) > tolerance * sqrt(dx * dx + dy * dy)) {
-        refine(w, g, second, middle, tolerance, depth - 1);
-        refine(w, g, second, end, tolerance, depth - 1);
-        return;
-    }
-    w->x[w->count] = end[0];
-    w->y[w->count++] = end[1];
+/* Is all between samples i and j within the tolerance of the chord? */
+static int is_flat(const wave *w, int32_t i, int32_t j, double tolerance) {
+    double dx = w->x[j] - w->x[i], dy = w->y[j] - w->y[i];
+    double most = tolerance * sqrt(dx * dx + dy * dy);
+    for (int32_t k = i + 1; k < j; k++)
+        if (fabs(dx * (w->y[k] - w->y[i]) - dy * (w->x[k] - w->x[i])) > most)
+            return 0;
+    return 1;
 }
 
-/* One period, its first point repeated at the end. */
+/* One period, its first point repeated at the end: samples so close that they are true to a sixth
+ * of the tolerance, and of those the fewest that keep to it. */
 static void find_wave(wave *w, const gyroid *g, int second, double tolerance) {
-    w->count = 1;
-    w->x[0] = 0;
-    w->y[0] = gyroid_at(g, 0, second);
-    for (int i = 1; i <= GYROID_PARTS; i++) {
-        double end[2] = {2 * pi * i / GYROID_PARTS, 0};
-        end[1] = gyroid_at(g, end[0], second);
-        refine(w, g, second, end, tolerance, GYROID_HALVINGS);
+    int32_t samples = (int32_t)(2 * pi / sqrt(0.9 * tolerance)) + 8, kept = 0;
+    samples = samples < SAMPLES_MAX ? samples : SAMPLES_MAX;
+    for (int32_t i = 0; i <= samples; i++) {
+        w->x[i] = 2 * pi * i / samples;
+        w->y[i] = gyroid_at(g, i < samples ? w->x[i] : 0, second);
     }
+    for (int32_t i = 0, j; i < samples; i = j) {
+        for (j = i + 1; j < samples && is_flat(w, i, j + 1, tolerance); j++) {
+        }
+        kept++;
+        w->x[kept] = w->x[j]; /* kept <= j: nothing still needed is lost */
+        w->y[kept] = w->y[j];
+    }
+    w->count = kept + 1;
 }
 
 /* 0.391315 is the mean length of the curves on unit area, over all heights, in frames where the
