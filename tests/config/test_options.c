@@ -405,8 +405,8 @@ static void test_placeholders_are_filled_in(void) {
     CHECK(strcmp(out, "M140 S60\nM104 S200\nM109 S200 ; 20%") == 0);
     CHECK_OK(iso_options_expand(out, sizeof out, "", &options));
     CHECK(strcmp(out, "") == 0);
-    static const char *const wrong[] = {"[nothing]", "{if temperature > 3}", "[temperature",
-                                        "M104 S{temperature\n}", "[]"};
+    static const char *const wrong[] = {"[nothing]", "{if temperature > 3}", "[temperature ",
+                                        "M104 S{temperature}{", "[]"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         CHECK_STATUS(ISO_BAD_CONFIG, iso_options_expand(out, sizeof out, wrong[i], &options));
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_expand(out, 9, "M104 S[temperature]", &options));
@@ -416,16 +416,19 @@ static void test_placeholders_are_filled_in(void) {
 static void test_placeholders_of_a_layer(void) {
     char out[64];
     iso_options_defaults(&options);
-    CHECK(settings_of_gcode(&options, "", "", 0).layer_text == NULL);
     CHECK_OK(iso_options_set(&options, "z_offset", "0.5", "test"));
     CHECK_OK(
         iso_options_set(&options, "layer_gcode", ";L [layer_num] {layer_z} [temperature]", ""));
     iso_gcode_options gcode = settings_of_gcode(&options, "", "", 0);
-    CHECK_OK(gcode.layer_text(out, sizeof out, gcode.layer_payload, 7, 0.85));
+    const iso_gcode_place place = {.layer = 7, .z = 0.35, .max_z = 0.35};
+    CHECK_OK(gcode.text(out, sizeof out, gcode.text_payload, ISO_TEXT_BEFORE_LAYER, &place));
+    CHECK(strcmp(out, "") == 0);
+    CHECK_OK(gcode.text(out, sizeof out, gcode.text_payload, ISO_TEXT_LAYER, &place));
     CHECK(strcmp(out, ";L 7 0.35 200") == 0); /* as PrusaSlicer 2.5 has it: without the offset */
-    CHECK_STATUS(ISO_BAD_CONFIG, gcode.layer_text(out, 9, gcode.layer_payload, 7, 0.85));
+    CHECK_STATUS(ISO_BAD_CONFIG, gcode.text(out, 9, gcode.text_payload, ISO_TEXT_LAYER, &place));
     CHECK_OK(iso_options_set(&options, "layer_gcode", "[layer_number]", ""));
-    CHECK_STATUS(ISO_BAD_CONFIG, gcode.layer_text(out, sizeof out, gcode.layer_payload, 7, 0.85));
+    CHECK_STATUS(ISO_BAD_CONFIG,
+                 gcode.text(out, sizeof out, gcode.text_payload, ISO_TEXT_LAYER, &place));
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_expand(out, sizeof out, "[layer_num]", &options));
 }
 

@@ -6,6 +6,14 @@
 
 static const double acceleration = 1000, deviation = 0.013;
 
+/* Axes that object to nothing. */
+static iso_machine_limits limits_of(double junction_deviation) {
+    return (iso_machine_limits){.feedrate = {1e6, 1e6, 1e6, 1e6},
+                                .acceleration = {1e6, 1e6, 1e6, 1e6},
+                                .jerk = {10, 10, 0.2, 2.5},
+                                .junction_deviation = junction_deviation};
+}
+
 static iso_planner_move along(double dx, double dy, double speed) {
     return (iso_planner_move){.dx = dx,
                               .dy = dy,
@@ -17,7 +25,8 @@ static iso_planner_move along(double dx, double dy, double speed) {
 
 static double time_of(const iso_planner_move *move, int count) {
     static iso_planner planner;
-    iso_planner_start(&planner, deviation);
+    iso_machine_limits limits = limits_of(deviation);
+    iso_planner_start(&planner, &limits);
     for (int i = 0; i < count; i++)
         iso_planner_add(&planner, &move[i]);
     iso_planner_stop(&planner);
@@ -57,7 +66,8 @@ static void test_reversal_and_filament_stop(void) {
     CHECK_NEAR(2 * time_of(&there, 1), time_of(both, 2), 1e-12);
     CHECK_NEAR(2 * time_of(&there, 1) + time_of(&pull, 1), time_of(pulled, 3), 1e-12);
     static iso_planner planner;
-    iso_planner_start(&planner, deviation);
+    iso_machine_limits limits = limits_of(deviation);
+    iso_planner_start(&planner, &limits);
     for (int i = 0; i < 3; i++)
         iso_planner_add(&planner, &pulled[i]);
     iso_planner_stop(&planner);

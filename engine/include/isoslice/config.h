@@ -73,11 +73,6 @@ typedef enum iso_limits_usage {
     ISO_LIMITS_ESTIMATE,
     ISO_LIMITS_IGNORE
 } iso_limits_usage;
-typedef enum iso_label_style {
-    ISO_LABELS_DISABLED,
-    ISO_LABELS_OCTOPRINT,
-    ISO_LABELS_FIRMWARE
-} iso_label_style;
 typedef enum iso_arc_fitting { ISO_ARCS_DISABLED, ISO_ARCS_EMIT_CENTER } iso_arc_fitting;
 typedef enum iso_cut_keep { ISO_CUT_BOTH, ISO_CUT_UPPER, ISO_CUT_LOWER } iso_cut_keep;
 typedef enum iso_mirror { ISO_MIRROR_NONE, ISO_MIRROR_X, ISO_MIRROR_Y, ISO_MIRROR_Z } iso_mirror;

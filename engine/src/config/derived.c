@@ -66,8 +66,9 @@ static double usual_speed(const iso_options *options, iso_role role) {
     case ISO_ROLE_SOLID_INFILL:
         return solid;
     case ISO_ROLE_TOP_SOLID_INFILL:
-    case ISO_ROLE_IRONING:
         return iso_relative_of(options->top_solid_infill_speed, solid);
+    case ISO_ROLE_IRONING:
+        return options->ironing_speed;
     case ISO_ROLE_OVERHANG_PERIMETER:
     case ISO_ROLE_BRIDGE_INFILL:
         return options->bridge_speed;

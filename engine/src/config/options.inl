@@ -31,6 +31,17 @@ ISO_WORD(PATTERN, ISO_PATTERN_ARCHIMEDEAN, "archimedeanchords")
 ISO_WORD(PATTERN, ISO_PATTERN_OCTAGRAM, "octagramspiral")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN2, "marlin2")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN, "marlin")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_KLIPPER, "klipper")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_REPRAP, "reprap")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_REPRAPFIRMWARE, "reprapfirmware")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_REPETIER, "repetier")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_SMOOTHIE, "smoothie")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_TEACUP, "teacup")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_MACHINEKIT, "machinekit")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_MACH3, "mach3")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_SAILFISH, "sailfish")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_MAKERWARE, "makerware")
+ISO_WORD(FLAVOUR, ISO_FLAVOUR_NO_EXTRUSION, "no-extrusion")
 ISO_WORD(SEAM, ISO_SEAM_RANDOM, "random")
 ISO_WORD(SEAM, ISO_SEAM_NEAREST, "nearest")
 ISO_WORD(SEAM, ISO_SEAM_ALIGNED, "aligned")
@@ -218,20 +229,22 @@ ISO_OPTION(brim_type, BRIM, "outer_only", "", 0, 0, "Skirt",
            "On which side of the outlines the brim is.")
 ISO_OPTION(brim_separation, NUMBER, "0", "mm", 0, 10, "Skirt", "Gap between the brim and the part.")
 
-ISO_OPTION(perimeter_speed, NUMBER, "60", "mm/s", 0.1, 1000, "Speed", "Speed of inner walls.")
-ISO_OPTION(external_perimeter_speed, RELATIVE, "50%", "mm/s", 0.1, 1000, "Speed",
+ISO_OPTION(perimeter_speed, NUMBER, "60", "mm/s", 0, 1000, "Speed",
+           "Speed of inner walls; 0, as for the other speeds of printing: as fast as an even flow "
+           "allows, by max_print_speed and max_volumetric_speed.")
+ISO_OPTION(external_perimeter_speed, RELATIVE, "50%", "mm/s", 0, 1000, "Speed",
            "Speed of the outer walls; in % of perimeter_speed.")
-ISO_OPTION(small_perimeter_speed, RELATIVE, "15", "mm/s", 0.1, 1000, "Speed",
+ISO_OPTION(small_perimeter_speed, RELATIVE, "15", "mm/s", 0, 1000, "Speed",
            "Speed of walls no longer around than a circle of radius 6.5 mm; in % of "
            "perimeter_speed.")
-ISO_OPTION(infill_speed, NUMBER, "80", "mm/s", 0.1, 1000, "Speed", "Speed of sparse infill.")
-ISO_OPTION(solid_infill_speed, RELATIVE, "20", "mm/s", 0.1, 1000, "Speed",
+ISO_OPTION(infill_speed, NUMBER, "80", "mm/s", 0, 1000, "Speed", "Speed of sparse infill.")
+ISO_OPTION(solid_infill_speed, RELATIVE, "20", "mm/s", 0, 1000, "Speed",
            "Speed of solid infill; in % of infill_speed.")
-ISO_OPTION(top_solid_infill_speed, RELATIVE, "15", "mm/s", 0.1, 1000, "Speed",
+ISO_OPTION(top_solid_infill_speed, RELATIVE, "15", "mm/s", 0, 1000, "Speed",
            "Speed of the topmost solid layers; in % of solid_infill_speed.")
 ISO_OPTION(gap_fill_speed, NUMBER, "20", "mm/s", 0, 1000, "Speed",
            "Speed of gap fill; 0 leaves gaps unfilled.")
-ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0.1, 1000, "Speed",
+ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0, 1000, "Speed",
            "Speed of bridges, and of walls over air.")
 ISO_OPTION(first_layer_speed, RELATIVE, "30", "mm/s", 0.1, 1000, "Speed",
            "Speed of everything printed on the first layer; in % of the usual speed of each path.")
@@ -241,23 +254,25 @@ ISO_OPTION(max_print_speed, NUMBER, "80", "mm/s", 1, 1000, "Speed",
 ISO_OPTION(max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Speed",
            "Most that the extruder can melt: faster beads are slowed down to it; 0 no limit.")
 ISO_OPTION(default_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration where none of the below says otherwise; 0 leaves it to the firmware.")
+           "Acceleration where none of the below says otherwise; 0 leaves all to the firmware, "
+           "whatever those below say.")
 ISO_OPTION(external_perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of outer walls; 0 takes default_acceleration.")
+           "Acceleration of outer walls; 0 as of walls.")
 ISO_OPTION(perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
            "Acceleration of walls; 0 takes default_acceleration.")
 ISO_OPTION(infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of sparse infill; 0 takes default_acceleration.")
+           "Acceleration of infill; 0 takes default_acceleration.")
 ISO_OPTION(solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of solid infill; 0 takes default_acceleration.")
+           "Acceleration of solid infill; 0 as of infill.")
 ISO_OPTION(top_solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of top surfaces; 0 takes default_acceleration.")
+           "Acceleration of top surfaces; 0 as of solid infill.")
 ISO_OPTION(bridge_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of bridges; 0 takes default_acceleration.")
+           "Acceleration of bridges and of walls over air; 0 as of solid infill and walls.")
 ISO_OPTION(first_layer_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of everything on the first layer; 0 takes default_acceleration.")
+           "Acceleration of everything on the first layer; 0 as above it.")
 ISO_OPTION(travel_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of moves that don't print; 0 takes default_acceleration.")
+           "Acceleration of moves that don't print; 0 takes default_acceleration if the firmware "
+           "has one acceleration for all moves, and leaves it alone else.")
 ISO_OPTION(travel_speed, NUMBER, "130", "mm/s", 1, 1000, "Speed",
            "Speed of moves that don't print.")
 ISO_OPTION(travel_speed_z, NUMBER, "0", "mm/s", 0, 1000, "Speed",

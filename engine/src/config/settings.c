@@ -2,10 +2,6 @@
 
 #include <math.h>
 
-#include <isoslice/version.h>
-
-#include "config/placeholder.h"
-
 /* A wall no longer around than a circle of this radius is a small one; the figure is PrusaSlicer's.
  */
 #define SMALL_RADIUS 6.5
@@ -210,79 +206,4 @@ iso_order_options settings_of_order(const iso_options *options) {
                       filament_seconds(options->retract_length, forth, acceleration),
         .retract_before = options->retract_before_travel * ISO_UNITS_PER_MM};
     return order;
-}
-
-static void set_speeds(iso_gcode_options *g, const iso_options *options) {
-    for (int role = 0; role < ISO_ROLE_COUNT; role++) {
-        g->speed[role] = iso_options_speed(options, (iso_role)role, false, false);
-        g->first_layer_speed[role] = iso_options_speed(options, (iso_role)role, false, true);
-    }
-    g->small_perimeter_speed = iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, false);
-    g->first_layer_small_perimeter_speed =
-        iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, true);
-    g->travel_speed = options->travel_speed;
-    g->travel_speed_z = options->travel_speed_z;
-}
-
-static void set_cooling(iso_gcode_options *g, const iso_options *options) {
-    g->cooling = options->cooling;
-    g->fan_always_on = options->fan_always_on;
-    g->min_fan_speed = options->min_fan_speed;
-    g->max_fan_speed = options->max_fan_speed;
-    g->disable_fan_first_layers = options->disable_fan_first_layers;
-    g->fan_below_layer_time = options->fan_below_layer_time;
-    g->slowdown_below_layer_time = options->slowdown_below_layer_time;
-    g->min_print_speed = options->min_print_speed;
-}
-
-static void set_machine(iso_gcode_options *g, const iso_options *options) {
-    g->flavour = (iso_flavour)options->gcode_flavor;
-    g->use_relative_e_distances = options->use_relative_e_distances;
-    g->temperature = options->temperature;
-    g->first_layer_temperature = options->first_layer_temperature;
-    g->bed_temperature = options->bed_temperature;
-    g->first_layer_bed_temperature = options->first_layer_bed_temperature;
-    g->acceleration = options->machine_max_acceleration_extruding;
-    g->travel_acceleration = options->machine_max_acceleration_travel;
-    g->retract_acceleration = options->machine_max_acceleration_retracting;
-    g->junction_deviation = options->machine_max_junction_deviation;
-    g->max_speed_z = options->machine_max_feedrate_z;
-}
-
-static void set_filament(iso_gcode_options *g, const iso_options *options) {
-    g->filament_diameter = options->filament_diameter;
-    g->filament_density = options->filament_density;
-    g->extrusion_multiplier = options->extrusion_multiplier;
-    g->retract_length = options->retract_length;
-    g->retract_speed = options->retract_speed;
-    g->deretract_speed = options->deretract_speed;
-    g->retract_restart_extra = options->retract_restart_extra;
-    g->retract_before_travel = options->retract_before_travel;
-    g->retract_lift = options->retract_lift;
-}
-
-static iso_status layer_text(char *text, size_t size, const void *payload, int32_t index,
-                             double z) {
-    const iso_options *options = payload;
-    const iso_placeholder of_layer[] = {{"layer_num", index}, {"layer_z", z - options->z_offset}};
-    return iso_placeholders_fill(text, size, options->layer_gcode, options, of_layer, 2);
-}
-
-iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
-                                    int64_t timestamp) {
-    iso_gcode_options g = iso_gcode_defaults();
-    set_speeds(&g, options);
-    set_cooling(&g, options);
-    set_machine(&g, options);
-    set_filament(&g, options);
-    g.start_gcode = start;
-    g.end_gcode = end;
-    if (*options->layer_gcode) {
-        g.layer_text = layer_text;
-        g.layer_payload = options;
-    }
-    g.generator = "isoslice " ISO_VERSION;
-    g.remaining_times = options->remaining_times;
-    g.timestamp = timestamp;
-    return g;
 }

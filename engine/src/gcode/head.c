@@ -26,31 +26,49 @@ static int32_t to_micrometres(int32_t units) {
     return units < 0 ? (units - 5) / 10 : (units + 5) / 10;
 }
 
+/* Where one acceleration holds for all moves, travel goes back to the usual one. */
+static int32_t travel_acceleration(const iso_head *head) {
+    const iso_gcode_options *o = head->options;
+    int apart = head->modes.words->travel_acceleration != NULL;
+    double wanted = apart || o->default_acceleration > 0 ? o->travel_acceleration : 0;
+    double limit = o->emit_machine_limits ? o->limits.travel : 0;
+    if (!(wanted > 0) && !apart)
+        wanted = o->default_acceleration;
+    return (int32_t)((limit > 0 && wanted > limit ? limit : wanted) + 0.5);
+}
+
 void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *options) {
     const iso_gcode_options *o = options;
     double section = pi / 4 * o->filament_diameter * o->filament_diameter;
+    double e_section = o->use_volumetric_e ? 1 : section;
     double unit = 1.0 / ISO_UNITS_PER_MM;
     double z_speed = o->travel_speed_z > 0 ? o->travel_speed_z : o->travel_speed;
     double deretract_speed = o->deretract_speed > 0 ? o->deretract_speed : o->retract_speed;
     memset(head, 0, offsetof(iso_head, planner));
-    iso_planner_start(&head->planner, o->junction_deviation);
+    iso_planner_start(&head->planner, &o->limits);
+    iso_modes_start(&head->modes, lines, o);
     head->lines = lines;
     head->options = o;
-    head->e_scale = o->extrusion_multiplier * unit * unit * unit / section * E_DECIMALS *
+    head->relative_e = o->use_relative_e_distances && head->modes.words->relative_e;
+    head->e_unit = e_section / section;
+    head->e_scale = o->extrusion_multiplier * unit * unit * unit / e_section * E_DECIMALS *
                     (double)((int64_t)1 << E_FRACTION);
     head->travel_feed = iso_head_feed(o->travel_speed);
     head->travel_feed_z = iso_head_feed(z_speed);
     head->retract_feed = iso_head_feed(o->retract_speed);
     head->deretract_feed = iso_head_feed(deretract_speed);
-    head->retract_e = to_e(o->retract_length);
-    head->deretract_e = to_e(o->retract_length + o->retract_restart_extra);
+    head->retract_e = to_e(o->retract_length / head->e_unit);
+    head->deretract_e = to_e((o->retract_length + o->retract_restart_extra) / head->e_unit);
+    head->travel_acceleration = travel_acceleration(head);
+    head->above = UNKNOWN;
     head->lift = iso_units(o->retract_lift);
     head->role = head->width = UNKNOWN;
     iso_head_forget_place(head);
 }
 
 void iso_head_begin_layer(iso_head *head, int32_t z) {
-    head->e = 0;
+    if (head->modes.words->reset_e)
+        head->e = 0;
     head->layer_z = z;
     head->role = head->width = UNKNOWN;
 }
@@ -62,11 +80,11 @@ void iso_head_forget_place(iso_head *head) {
 double iso_head_retraction_time(const iso_head *head) {
     double back = (double)head->retract_e / E_DECIMALS / head->retract_feed;
     double forth = (double)head->deretract_e / E_DECIMALS / head->deretract_feed;
-    return 60 * (back + forth);
+    return 60 * head->e_unit * (back + forth);
 }
 
 double iso_head_filament(const iso_head *head) {
-    return (double)head->emitted / E_DECIMALS;
+    return (double)head->emitted / E_DECIMALS * head->e_unit;
 }
 
 static char *put_feed(iso_head *head, char *p, int32_t feed) {
@@ -80,71 +98,107 @@ static char *put_feed(iso_head *head, char *p, int32_t feed) {
 
 /* Move the filament by `delta` last digits. */
 static char *put_e(iso_head *head, char *p, int64_t delta) {
+    const char *axis = head->modes.words->axis;
     head->e += delta;
-    p = ISO_PUT(p, " E");
-    return iso_put_hundred_thousandths(p,
-                                       head->options->use_relative_e_distances ? delta : head->e);
+    if (!*axis)
+        return p;
+    p[0] = axis[0];
+    p[1] = axis[1];
+    return iso_put_hundred_thousandths(p + 2, head->relative_e ? delta : head->e);
+}
+
+/* What is told holds, but no more than the machine's own. */
+static double acceleration_of(int32_t told, double limit) {
+    return told > 0 && told < limit ? told : limit;
 }
 
 static void plan(iso_head *head, double dx, double dy, double dz, int extrudes) {
+    const iso_machine_limits *limits = &head->options->limits;
+    const iso_modes *modes = &head->modes;
     iso_planner_move move = {.dx = dx, .dy = dy, .dz = dz, .extrudes = extrudes};
     move.length = sqrt(dx * dx + dy * dy + dz * dz);
     move.speed = head->speed;
-    move.acceleration = extrudes ? head->options->acceleration : head->options->travel_acceleration;
-    double z_speed = head->options->max_speed_z;
-    double rise = dz < 0 ? -dz : dz;
-    if (rise > 0 && z_speed > 0 && rise * move.speed > z_speed * move.length)
-        move.speed = z_speed * move.length / rise;
+    move.acceleration = extrudes ? acceleration_of(modes->acceleration, limits->extruding)
+                                 : acceleration_of(modes->travel_acceleration, limits->travel);
     iso_planner_add(&head->planner, &move);
     head->moves++;
     *(extrudes ? &head->bead_mm : &head->travel_mm) += move.length;
 }
 
 static void plan_filament(iso_head *head, int64_t e) {
-    iso_planner_move move = {.length = (double)(e < 0 ? -e : e) / E_DECIMALS,
+    iso_planner_move move = {.length = (double)(e < 0 ? -e : e) / E_DECIMALS * head->e_unit,
                              .speed = head->speed,
-                             .acceleration = head->options->retract_acceleration};
+                             .acceleration = head->options->limits.retracting};
     iso_planner_add(&head->planner, &move);
     head->moves++;
 }
 
-static void move_filament(iso_head *head, int64_t e, int32_t feed) {
+static void move_filament(iso_head *head, int64_t e, int32_t feed, const char *comment) {
     char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1");
     p = put_e(head, p, e);
     p = put_feed(head, p, feed);
-    iso_lines_accept(head->lines, iso_put_newline(p));
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment));
     plan_filament(head, e);
 }
 
+/* The firmware's own: how far and how fast is its affair, and taken to be as here. */
+static void move_filament_by_firmware(iso_head *head, const char *command, int64_t e, int32_t feed,
+                                      const char *comment) {
+    double speed = head->speed;
+    iso_modes_say(&head->modes, command, 0, comment);
+    head->speed = feed / 60.0;
+    plan_filament(head, e);
+    head->speed = speed;
+}
+
 void iso_head_retract(iso_head *head) {
-    if (head->retracted || head->retract_e == 0)
+    const iso_flavour_words *words = head->modes.words;
+    if (head->retracted || head->retract_e == 0 || !*words->axis)
         return;
     head->retracted = 1;
     head->retractions++;
-    move_filament(head, -head->retract_e, head->retract_feed);
+    if (head->options->use_firmware_retraction)
+        move_filament_by_firmware(head, words->retract, -head->retract_e, head->retract_feed,
+                                  "retract");
+    else
+        move_filament(head, -head->retract_e, head->retract_feed, "retract");
+    iso_modes_say(&head->modes, words->retracted, 0, "extruder off");
 }
 
 static void deretract(iso_head *head) {
+    const iso_flavour_words *words = head->modes.words;
     if (!head->retracted)
         return;
     head->retracted = 0;
-    move_filament(head, head->deretract_e, head->deretract_feed);
+    iso_modes_say(&head->modes, words->deretracting, 0, "extruder on");
+    if (head->options->use_firmware_retraction)
+        move_filament_by_firmware(head, words->deretract, head->deretract_e, head->deretract_feed,
+                                  "unretract");
+    else
+        move_filament(head, head->deretract_e, head->deretract_feed, "unretract");
 }
 
-static void move_z(iso_head *head, int32_t z) {
+static void move_z(iso_head *head, int32_t z, const char *comment) {
     if (z == head->z)
         return;
     char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1 Z");
     p = iso_put_thousandths(p, to_micrometres(z));
     p = put_feed(head, p, head->travel_feed_z);
-    iso_lines_accept(head->lines, iso_put_newline(p));
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment));
     if (head->z != UNKNOWN)
         plan(head, 0, 0, iso_mm(z - head->z), 0);
     head->z = z;
 }
 
 void iso_head_reach_layer(iso_head *head) {
-    move_z(head, head->layer_z + (head->retracted ? head->lift : 0));
+    if (head->above == UNKNOWN)
+        move_z(head, head->layer_z + (head->retracted ? head->lift : 0), "to the layer");
+}
+
+void iso_head_rise_above(iso_head *head, int32_t z) {
+    iso_head_retract(head);
+    head->above = z;
+    move_z(head, z, "above all");
 }
 
 static double mm_between(const iso_head *head, int32_t x, int32_t y) {
@@ -158,7 +212,7 @@ static void move_flat(iso_head *head, int32_t x, int32_t y) {
     p = ISO_PUT(p, " Y");
     p = iso_put_thousandths(p, y);
     p = put_feed(head, p, head->travel_feed);
-    iso_lines_accept(head->lines, iso_put_newline(p));
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, "travel"));
     if (head->x != UNKNOWN)
         plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
     head->x = x;
@@ -193,12 +247,15 @@ static void travel(iso_head *head, const iso_path *path, const iso_point *way, i
         iso_head_retract(head);
     if (away) {
         int32_t low = z > head->layer_z ? z : head->layer_z;
-        move_z(head, head->retracted ? low + head->lift : low);
+        int32_t high = head->retracted ? low + head->lift : low;
+        move_z(head, head->above > high ? head->above : high, "lift");
+        iso_modes_accelerate_travel(&head->modes, head->travel_acceleration);
         for (int32_t i = 0; known && i < path->travel_count; i++)
             move_flat(head, to_micrometres(way[i].x), to_micrometres(way[i].y));
         move_flat(head, x, y);
     }
-    move_z(head, z);
+    head->above = UNKNOWN;
+    move_z(head, z, "to the layer");
     deretract(head);
 }
 
@@ -209,6 +266,34 @@ static void say_role(iso_head *head, int32_t role) {
     char *p = ISO_PUT(iso_lines_reserve(head->lines), ";TYPE:");
     p = iso_put_text(p, iso_role_name((iso_role)role));
     iso_lines_accept(head->lines, iso_put_newline(p));
+}
+
+static void blow(iso_head *head, int32_t role, const iso_layer_pace *pace) {
+    iso_modes_set_fan(&head->modes, iso_role_is_bridge(role) ? pace->bridge_fan : pace->fan);
+}
+
+/* What a piece of that role is printed with. */
+static void begin_piece(iso_head *head, int32_t role, const iso_layer_pace *pace) {
+    blow(head, role, pace);
+    iso_modes_accelerate(&head->modes, pace->acceleration[role]);
+    say_role(head, role);
+}
+
+static const char *comment_of(int32_t role) {
+    static const char *const comment[ISO_ROLE_COUNT] = {[ISO_ROLE_EXTERNAL_PERIMETER] = "perimeter",
+                                                        [ISO_ROLE_PERIMETER] = "perimeter",
+                                                        [ISO_ROLE_OVERHANG_PERIMETER] = "perimeter",
+                                                        [ISO_ROLE_INTERNAL_INFILL] = "infill",
+                                                        [ISO_ROLE_SOLID_INFILL] = "infill",
+                                                        [ISO_ROLE_TOP_SOLID_INFILL] = "infill",
+                                                        [ISO_ROLE_IRONING] = "ironing",
+                                                        [ISO_ROLE_BRIDGE_INFILL] = "bridge",
+                                                        [ISO_ROLE_GAP_FILL] = "gap fill",
+                                                        [ISO_ROLE_SKIRT] = "skirt",
+                                                        [ISO_ROLE_SUPPORT] = "support",
+                                                        [ISO_ROLE_SUPPORT_INTERFACE] = "support",
+                                                        [ISO_ROLE_CUSTOM] = "custom"};
+    return comment[role];
 }
 
 static char *put_width(iso_head *head, char *p, int32_t width) {
@@ -241,7 +326,7 @@ static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point 
         p = put_e(head, p, e - head->emitted);
     head->emitted = e;
     p = put_feed(head, p, feed);
-    iso_lines_accept(head->lines, iso_put_newline(p));
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment_of(head->role)));
     plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, iso_mm(z - head->z), 1);
     head->x = x;
     head->y = y;
@@ -255,11 +340,21 @@ void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
     int32_t segments = path->closed ? path->count : path->count - 1;
     if (path->count < 2)
         return;
+    blow(head, vertex[0].role, pace); /* it takes a while to turn faster */
     travel(head, path, way, vertex[0].at, head->layer_z + vertex[0].z);
+    int32_t role = UNKNOWN, feed = 0;
+    int slot = 0;
     for (int32_t i = 0; i < segments; i++) {
-        const iso_path_vertex *to = &vertex[i + 1 < path->count ? i + 1 : 0];
-        say_role(head, vertex[i].role);
-        draw_segment(head, &vertex[i], to->at, head->layer_z + to->z, length[i],
-                     pace->feed[iso_speed_slot(vertex[i].role, path->speed_class)]);
+        const iso_path_vertex *from = &vertex[i], *to = &vertex[i + 1 < path->count ? i + 1 : 0];
+        if (from->role != role) {
+            role = from->role;
+            slot = iso_speed_slot(role, path->speed_class);
+            feed = pace->feed[slot];
+            begin_piece(head, role, pace);
+        }
+        int32_t own = from->area > pace->most_area[slot]
+                          ? iso_pace_limited_feed(pace, slot, from->area)
+                          : feed;
+        draw_segment(head, from, to->at, head->layer_z + to->z, length[i], own);
     }
 }

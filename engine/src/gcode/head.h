@@ -1,5 +1,5 @@
 /* The print head as the G-code has it so far: where it is, how much filament it has drawn, what was
- * last said. It writes every G1. */
+ * last said. It writes every move. */
 #ifndef ISO_GCODE_HEAD_H
 #define ISO_GCODE_HEAD_H
 
@@ -8,6 +8,7 @@
 
 #include "gcode/cooling.h"
 #include "gcode/lines.h"
+#include "gcode/modes.h"
 #include "gcode/planner.h"
 
 enum { ISO_HEAD_UNKNOWN = INT32_MIN };
@@ -15,14 +16,19 @@ enum { ISO_HEAD_UNKNOWN = INT32_MIN };
 typedef struct iso_head {
     iso_lines *lines;
     const iso_gcode_options *options;
+    iso_modes modes;
+    int relative_e;
+    double e_unit;  /* mm of filament that one E is */
     double e_scale; /* E in fractions of its last digit for a bead of one unit^3 */
     int32_t travel_feed, travel_feed_z, retract_feed, deretract_feed; /* mm/min */
     int32_t lift;                                                     /* units */
     int64_t retract_e, deretract_e;                                   /* last digits */
+    int32_t travel_acceleration;                                      /* to tell; 0: nothing */
 
     int32_t x, y;        /* um */
     int32_t z;           /* units */
     int32_t layer_z;     /* units */
+    int32_t above;       /* units: height of the next travel, over all that stands; or UNKNOWN */
     int32_t feed;        /* mm/min */
     double speed;        /* mm/s: the same */
     int64_t e;           /* last digits since E was reset */
@@ -49,6 +55,9 @@ void iso_head_forget_place(iso_head *head);
 void iso_head_reach_layer(iso_head *head);
 
 void iso_head_retract(iso_head *head);
+
+/* Up to a height over all that stands; the next travel stays there until it is where it goes. */
+void iso_head_rise_above(iso_head *head, int32_t z);
 
 /* To the path's beginning, by way of the points where its travel turns, and along it, each bead at
  * its role's speed. length[i] in units from the path's vertex i to the next one. Nothing happens on

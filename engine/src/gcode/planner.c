@@ -1,17 +1,21 @@
 #include "gcode/planner.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 static double smaller(double a, double b) {
     return a < b ? a : b;
 }
 
-void iso_planner_start(iso_planner *planner, double junction_deviation) {
-    planner->junction_deviation = junction_deviation;
-    planner->x = planner->y = planner->z = 0;
-    planner->entry = planner->time = planner->idle_time = 0;
-    planner->count = 0;
+void iso_planner_start(iso_planner *planner, const iso_machine_limits *limits) {
+    const double *v = limits->feedrate, *a = limits->acceleration;
+    memset(planner, 0, offsetof(iso_planner, block));
+    planner->limits = *limits;
+    planner->classic_jerk = !(limits->junction_deviation > 0);
+    planner->axes_speed = smaller(v[0], v[1]);
+    planner->axes_acceleration = smaller(a[0], a[1]);
+    planner->mark = -1;
 }
 
 /* Seconds for a block entered and left at the given speeds. With a the acceleration, v the speed
@@ -25,7 +29,7 @@ static double time_of(const iso_planner_block *b, double in, double out) {
 
 /* Entry speeds from which the machine can still brake, were it to stop behind the last block. */
 static void plan_backwards(iso_planner *planner) {
-    double next = 0;
+    double next = planner->count > 0 ? planner->block[planner->count - 1].rest : 0;
     for (int32_t i = planner->count; i-- > 0;) {
         iso_planner_block *b = &planner->block[i];
         next = b->entry = smaller(b->limit, next + b->gain);
@@ -38,9 +42,11 @@ static void let_go(iso_planner *planner, int32_t count) {
     double in_squared = planner->entry, in = sqrt(in_squared);
     for (int32_t i = 0; i < count; i++) {
         const iso_planner_block *b = &planner->block[i];
-        double next = i + 1 < planner->count ? b[1].entry : 0;
+        double next = i + 1 < planner->count ? b[1].entry : b->rest;
         double out_squared = smaller(next, in_squared + b->gain), out = sqrt(out_squared);
         double t = time_of(b, in, out);
+        if (i == planner->mark)
+            planner->mark_time = planner->time;
         planner->time += t;
         if (!b->extrudes)
             planner->idle_time += t;
@@ -49,6 +55,7 @@ static void let_go(iso_planner *planner, int32_t count) {
     }
     planner->entry = in_squared;
     planner->count -= count;
+    planner->mark = planner->mark >= count ? planner->mark - count : -1;
     memmove(planner->block, planner->block + count,
             (size_t)planner->count * sizeof planner->block[0]);
 }
@@ -62,8 +69,48 @@ static double junction_squared(const iso_planner *planner, double x, double y, d
     if (!moved || cosine > 0.999999 || (x == 0 && y == 0 && z == 0))
         return 0;
     double sine = cosine < -1 ? 1 : sqrt(0.5 * (1 - cosine));
-    double reached = acceleration * planner->junction_deviation * sine;
+    double reached = acceleration * planner->limits.junction_deviation * sine;
     return reached >= most * (1 - sine) ? most : reached / (1 - sine);
+}
+
+/* The most of `value` that keeps each axis within its limit. */
+static double within(double value, const double direction[4], const double most[4]) {
+    for (int i = 0; i < 4; i++) {
+        double part = direction[i] < 0 ? -direction[i] : direction[i];
+        if (part * value > most[i])
+            value = most[i] / part;
+    }
+    return value;
+}
+
+/* Square of the speed at which no axis jumps by more than its jerk; one that turns back stops on
+ * the way. Stopping and starting anew is always allowed. */
+static double jerk_squared(const iso_planner *planner, const double to[4], double rest,
+                           double slower) {
+    const double from[4] = {planner->x, planner->y, planner->z, planner->filament};
+    double jump[4], stop = planner->count > 0 ? planner->block[planner->count - 1].rest : rest;
+    int moved = 0;
+    for (int i = 0; i < 4; i++) {
+        double a = from[i] < 0 ? -from[i] : from[i], b = to[i] < 0 ? -to[i] : to[i];
+        moved |= a > 0;
+        jump[i] = from[i] * to[i] >= 0 ? a - b : a > b ? a : b;
+    }
+    if (!moved)
+        return rest;
+    double speed = within(slower, jump, planner->limits.jerk);
+    stop = smaller(stop, rest);
+    return speed * speed > stop ? speed * speed : stop;
+}
+
+/* In place of junction deviation: limits of entry and rest by jerk. */
+static void limit_by_jerk(iso_planner *planner, iso_planner_block *block, const double to[4],
+                          double slower) {
+    double rest = within(block->speed, to, planner->limits.jerk);
+    block->rest = rest * rest;
+    block->limit = jerk_squared(planner, to, block->rest, slower);
+    if (planner->count == 0 && planner->x == 0 && planner->y == 0 && planner->z == 0 &&
+        planner->filament == 0)
+        planner->entry = block->rest;
 }
 
 void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
@@ -73,19 +120,34 @@ void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
         plan_backwards(planner);
         let_go(planner, ISO_PLANNER_WINDOW - ISO_PLANNER_AHEAD);
     }
-    double inverse = 1 / move->length;
+    double inverse = 1 / move->length, speed = move->speed, acceleration = move->acceleration;
     double x = move->dx * inverse, y = move->dy * inverse, z = move->dz * inverse;
+    double filament = x == 0 && y == 0 && z == 0;
+    const double to[4] = {x, y, z, filament};
+    if (speed > planner->axes_speed || z != 0 || filament > 0)
+        speed = within(speed, to, planner->limits.feedrate);
+    if (acceleration > planner->axes_acceleration || z != 0 || filament > 0)
+        acceleration = within(acceleration, to, planner->limits.acceleration);
     double before = planner->count > 0 ? planner->block[planner->count - 1].speed : 0;
-    double slower = smaller(before, move->speed);
-    planner->block[planner->count++] = (iso_planner_block){
-        .speed = move->speed,
-        .acceleration = move->acceleration,
-        .gain = 2 * move->acceleration * move->length,
-        .limit = junction_squared(planner, x, y, z, move->acceleration, slower * slower),
-        .extrudes = move->extrudes};
+    double slower = smaller(before, speed);
+    iso_planner_block block = {.speed = speed,
+                               .acceleration = acceleration,
+                               .gain = 2 * acceleration * move->length,
+                               .extrudes = move->extrudes};
+    if (planner->classic_jerk)
+        limit_by_jerk(planner, &block, to, slower);
+    else
+        block.limit = junction_squared(planner, x, y, z, acceleration, slower * slower);
+    planner->block[planner->count++] = block;
     planner->x = x;
     planner->y = y;
     planner->z = z;
+    planner->filament = filament;
+}
+
+void iso_planner_set_mark(iso_planner *planner) {
+    planner->mark = planner->count;
+    planner->mark_time = -1;
 }
 
 double iso_planner_elapsed(const iso_planner *planner) {
@@ -96,8 +158,11 @@ double iso_planner_elapsed(const iso_planner *planner) {
 }
 
 void iso_planner_stop(iso_planner *planner) {
+    int32_t marked = planner->mark >= 0 && planner->mark == planner->count;
     plan_backwards(planner);
     let_go(planner, planner->count);
-    planner->x = planner->y = planner->z = 0;
+    if (marked)
+        planner->mark_time = planner->time;
+    planner->x = planner->y = planner->z = planner->filament = 0;
     planner->entry = 0;
 }

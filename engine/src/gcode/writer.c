@@ -5,47 +5,40 @@
 
 #include "base/memory.h"
 #include "gcode/cooling.h"
+#include "gcode/event.h"
 #include "gcode/flavour.h"
 #include "gcode/head.h"
+#include "gcode/label.h"
 #include "gcode/lines.h"
 #include "gcode/number.h"
 #include "gcode/progress.h"
 #include "gcode/text.h"
+#include "gcode/work.h"
 
 static const double pi = 3.14159265358979323846;
 
-enum { LAYER_TEXT_SIZE = 64 << 10 };
+enum {
+    TEXT_SIZE = 64 << 10,
+    CLEARANCE = 10000 /* units over what stands, on the way to the next object */
+};
 
 struct iso_gcode_writer {
     iso_gcode_options options;
     const iso_flavour_words *words;
-    int fan;          /* percent last said */
     int64_t layers;   /* so far */
     double clock;     /* s at full speed; the planner's own lags behind by its window */
     double next_mark; /* of the progress, by that clock */
+    int32_t highest;  /* units: top of the highest layer so far */
+    int32_t object;   /* that labels say is being printed; -1 none */
+    iso_gcode_place place;
     iso_progress progress;
+    iso_events events;
     double *length; /* [length_capacity] units: of each segment of the layer */
     int64_t length_capacity;
-    char *layer_text; /* [LAYER_TEXT_SIZE] if there is one */
+    char *text; /* [TEXT_SIZE] if there is one to be asked for */
     iso_head head;
     iso_lines lines;
 };
-
-static void set_fan(iso_gcode_writer *w, int percent) {
-    if (percent == w->fan)
-        return;
-    w->fan = percent;
-    char *p =
-        iso_put_text(iso_lines_reserve(&w->lines), percent > 0 ? w->words->fan : w->words->fan_off);
-    if (percent > 0)
-        p = iso_put_integer(p, (255 * percent + 50) / 100);
-    iso_lines_accept(&w->lines, iso_put_newline(p));
-}
-
-static void say(iso_gcode_writer *w, const char *command, int value) {
-    char *p = iso_put_integer(iso_put_text(iso_lines_reserve(&w->lines), command), value);
-    iso_lines_accept(&w->lines, iso_put_newline(p));
-}
 
 /* A line to be filled in when the whole time is known. */
 static iso_status mark_progress(iso_gcode_writer *w) {
@@ -59,70 +52,27 @@ static iso_status mark_progress(iso_gcode_writer *w) {
     return ISO_OK;
 }
 
+/* What is drawn around objects belongs to none. */
+static void label_object(iso_gcode_writer *w, int32_t object) {
+    if (object == w->object)
+        return;
+    iso_labels_end(&w->lines, &w->options, w->object);
+    iso_labels_begin(&w->lines, &w->options, object);
+    w->object = object;
+}
+
 static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const iso_path *path,
                             const iso_layer_pace *pace) {
     if (path->count < 2)
         return ISO_OK;
     if (w->clock > w->next_mark)
         ISO_TRY(mark_progress(w));
-    set_fan(w, pace->fan);
+    label_object(w, path->role == ISO_ROLE_SKIRT ? -1 : path->object);
     double drawn_before = w->head.bead_mm;
     iso_head_draw(&w->head, paths, path, w->length + path->first, pace);
     w->clock += (w->head.bead_mm - drawn_before) * 60 /
                 pace->feed[iso_speed_slot(path->role, path->speed_class)];
     return ISO_OK;
-}
-
-static double length_between(const iso_path_vertex *a, const iso_path_vertex *b) {
-    double dx = (double)b->at.x - a->at.x, dy = (double)b->at.y - a->at.y;
-    double dz = (double)b->z - a->z;
-    return sqrt(dx * dx + dy * dy + dz * dz); /* of an integer below 2^53: rounded once */
-}
-
-/* From `end` by way of the points where the travel turns. */
-static double length_of_travel(const iso_paths *paths, const iso_path *path,
-                               const iso_path_vertex *end) {
-    iso_path_vertex at = *end;
-    double sum = 0;
-    for (int32_t i = 0; i < path->travel_count; i++) {
-        iso_path_vertex turn = at;
-        turn.at = paths->travel[path->travel_first + i];
-        sum += length_between(&at, &turn);
-        at = turn;
-    }
-    return sum + length_between(&at, &paths->vertex[path->first]);
-}
-
-/* Every segment's length, and what the layer asks for by speed. */
-static void measure(iso_layer_work *work, iso_gcode_writer *w, const iso_paths *paths) {
-    const iso_path_vertex *end = NULL;
-    double travel_units = 0;
-    int32_t retractions = 0;
-    *work = (iso_layer_work){0};
-    for (int32_t i = 0; i < paths->count; i++) {
-        const iso_path *path = &paths->path[i];
-        const iso_path_vertex *vertex = paths->vertex + path->first;
-        double *length = w->length + path->first;
-        if (path->count < 2)
-            continue;
-        int32_t last = path->count - 1;
-        for (int32_t k = 0; k < last; k++)
-            length[k] = length_between(&vertex[k], &vertex[k + 1]);
-        if (path->closed)
-            length[last] = length_between(&vertex[last], &vertex[0]);
-        for (int32_t k = 0; k < last + path->closed; k++)
-            work->length[iso_speed_slot(vertex[k].role, path->speed_class)] +=
-                length[k] / ISO_UNITS_PER_MM;
-        if (end) {
-            double units = length_of_travel(paths, path, end);
-            travel_units += units;
-            retractions += path->retract != ISO_RETRACT_NOT &&
-                           units > w->options.retract_before_travel * ISO_UNITS_PER_MM;
-        }
-        end = &vertex[path->closed ? 0 : last];
-    }
-    work->other_time = travel_units / ISO_UNITS_PER_MM * 60 / w->head.travel_feed +
-                       retractions * iso_head_retraction_time(&w->head);
 }
 
 static iso_status check_layer(const iso_gcode_layer_info *layer) {
@@ -138,48 +88,97 @@ static iso_status check_layer(const iso_gcode_layer_info *layer) {
     return ISO_OK;
 }
 
-static void begin_layer(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
-    char *p = ISO_PUT(iso_lines_reserve(&w->lines), ";LAYER_CHANGE\n;Z:");
-    p = iso_put_decimal(p, layer->z, 4);
-    p = ISO_PUT(p, "\n;HEIGHT:");
-    p = iso_put_decimal(p, layer->height, 4);
-    *p++ = '\n';
-    p = iso_put_text(p, w->words->reset_e);
-    iso_lines_accept(&w->lines, iso_put_newline(p));
-    iso_head_begin_layer(&w->head, layer->z);
-}
-
-/* The first layer's temperatures end with it. */
-static void change_temperatures(iso_gcode_writer *w) {
-    const iso_gcode_options *o = &w->options;
-    if (o->temperature > 0 && o->temperature != o->first_layer_temperature)
-        say(w, w->words->nozzle, o->temperature);
-    if (o->bed_temperature > 0 && o->bed_temperature != o->first_layer_bed_temperature)
-        say(w, w->words->bed, o->bed_temperature);
-}
-
 /* Text of the user's: whole lines, as they are. */
 static iso_status put_user_text(iso_gcode_writer *w, const char *text) {
+    static const char *const moving[] = {"G0", "G1", "G2", "G3", "G28"};
     if (!text || !*text)
         return ISO_OK;
     ISO_TRY(iso_lines_flush(&w->lines));
     size_t size = strlen(text);
     ISO_TRY(iso_output_write(w->lines.output, text, size));
     w->head.feed = ISO_HEAD_UNKNOWN;
-    if (iso_text_has_command(text, "G0") || iso_text_has_command(text, "G1") ||
-        iso_text_has_command(text, "G28"))
-        iso_head_forget_place(&w->head);
+    for (size_t i = 0; i < sizeof moving / sizeof *moving; i++)
+        if (iso_text_has_command(text, moving[i]))
+            iso_head_forget_place(&w->head);
     return text[size - 1] == '\n' ? ISO_OK : iso_output_write(w->lines.output, "\n", 1);
 }
 
-static iso_status put_layer_text(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
+/* "" if there is none. */
+static iso_status ask_text(iso_gcode_writer *w, iso_gcode_text_kind kind) {
     const iso_gcode_options *o = &w->options;
-    if (!o->layer_text)
-        return ISO_OK;
-    ISO_TRY(o->layer_text(w->layer_text, LAYER_TEXT_SIZE, o->layer_payload, layer->index,
-                          iso_mm(layer->z)));
-    iso_head_reach_layer(&w->head);
-    return put_user_text(w, w->layer_text);
+    if (!o->text)
+        return ISO_OK; /* empty from the beginning */
+    return o->text(w->text, TEXT_SIZE, o->text_payload, kind, &w->place);
+}
+
+static iso_status put_text(iso_gcode_writer *w, iso_gcode_text_kind kind) {
+    ISO_TRY(ask_text(w, kind));
+    return put_user_text(w, w->text);
+}
+
+/* The layer's own, once the nozzle is at its height. */
+static iso_status put_layer_text(iso_gcode_writer *w) {
+    ISO_TRY(ask_text(w, ISO_TEXT_LAYER));
+    if (*w->text)
+        iso_head_reach_layer(&w->head);
+    return put_user_text(w, w->text);
+}
+
+static void put_line(iso_gcode_writer *w, const char *text) {
+    char *p = iso_put_text(iso_lines_reserve(&w->lines), text);
+    iso_lines_accept(&w->lines, iso_put_newline(p));
+}
+
+static iso_status put_event(iso_gcode_writer *w, const iso_event *event) {
+    const char *usual = event->kind == ISO_TEXT_PAUSE          ? w->words->pause
+                        : event->kind == ISO_TEXT_COLOR_CHANGE ? w->words->color_change
+                                                               : NULL;
+    put_line(w, event->kind == ISO_TEXT_PAUSE          ? ";PAUSE_PRINT"
+                : event->kind == ISO_TEXT_COLOR_CHANGE ? ";COLOR_CHANGE,T0"
+                                                       : ";CUSTOM_GCODE");
+    if (event->kind == ISO_TEXT_KIND_COUNT)
+        return put_user_text(w, event->text);
+    if (event->kind == ISO_TEXT_PAUSE && event->text) {
+        iso_lines_accept(&w->lines, ISO_PUT(iso_lines_reserve(&w->lines), "M117 "));
+        ISO_TRY(put_user_text(w, event->text));
+    }
+    ISO_TRY(ask_text(w, event->kind));
+    return put_user_text(w, *w->text ? w->text : usual);
+}
+
+static iso_status put_events(iso_gcode_writer *w) {
+    const iso_event *event;
+    while ((event = iso_events_take(&w->events, w->place.z)) != NULL)
+        ISO_TRY(put_event(w, event));
+    return ISO_OK;
+}
+
+static iso_status begin_layer(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
+    int32_t top = layer->z - iso_units(w->options.z_offset);
+    char *p = ISO_PUT(iso_lines_reserve(&w->lines), ";LAYER_CHANGE\n;Z:");
+    p = iso_put_decimal(p, top, 4);
+    p = ISO_PUT(p, "\n;HEIGHT:");
+    p = iso_put_decimal(p, layer->height, 4);
+    iso_lines_accept(&w->lines, iso_put_newline(p));
+    w->highest = layer->z > w->highest ? layer->z : w->highest;
+    w->place.layer = layer->index;
+    w->place.z = iso_mm(top);
+    w->place.max_z = iso_mm(w->highest - iso_units(w->options.z_offset));
+    ISO_TRY(put_text(w, ISO_TEXT_BEFORE_LAYER));
+    if (w->words->reset_e)
+        put_line(w, w->words->reset_e);
+    iso_head_begin_layer(&w->head, layer->z);
+    return put_layer_text(w);
+}
+
+/* The first layer's temperatures end with it; the next object's begin with its own. */
+static void change_temperatures(iso_gcode_writer *w, int32_t layer) {
+    const iso_gcode_options *o = &w->options;
+    iso_modes *modes = &w->head.modes;
+    if (layer > 1 || w->layers == 0)
+        return;
+    iso_modes_heat_nozzle(modes, layer == 0 ? o->first_layer_temperature : o->temperature, 0);
+    iso_modes_heat_bed(modes, layer == 0 ? o->first_layer_bed_temperature : o->bed_temperature, 0);
 }
 
 iso_status iso_gcode_layer(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
@@ -187,16 +186,41 @@ iso_status iso_gcode_layer(iso_gcode_writer *w, const iso_gcode_layer_info *laye
     ISO_TRY(ISO_GROW(w->length, w->length_capacity, layer->paths->vertex_count));
     iso_layer_work work;
     iso_layer_pace pace;
-    measure(&work, w, layer->paths);
+    iso_cooling_begin(&pace, &w->options, layer->index);
+    iso_work_measure(&work, w->length, layer->paths, &pace, &w->head);
     iso_cooling_pace(&pace, &work, &w->options, layer->index);
-    begin_layer(w, layer);
-    ISO_TRY(put_layer_text(w, layer));
+    ISO_TRY(begin_layer(w, layer));
     ISO_TRY(mark_progress(w));
+    change_temperatures(w, layer->index);
+    ISO_TRY(put_events(w));
     if (w->layers++ == 1)
-        change_temperatures(w);
+        iso_planner_set_mark(&w->head.planner);
     for (int32_t i = 0; i < layer->paths->count; i++)
         ISO_TRY(draw_path(w, layer->paths, &layer->paths->path[i], &pace));
+    label_object(w, -1);
     return iso_output_write(w->lines.output, "", 0);
+}
+
+iso_status iso_gcode_next_object(iso_gcode_writer *w, int32_t object) {
+    w->place.object = object;
+    w->events.next = w->events.count; /* they came with the first object */
+    iso_head_rise_above(&w->head, w->highest + CLEARANCE + w->head.lift);
+    iso_modes_set_fan(&w->head.modes, 0);
+    return put_text(w, ISO_TEXT_BETWEEN_OBJECTS);
+}
+
+static iso_status writer_start(iso_gcode_writer *w, iso_output *output) {
+    const iso_gcode_options *o = &w->options;
+    w->words = iso_flavour_get_words(o->flavour);
+    w->object = -1;
+    w->place = (iso_gcode_place){.layer = -1, .object = 0};
+    iso_lines_start(&w->lines, output);
+    iso_head_start(&w->head, &w->lines, o);
+    ISO_TRY(iso_labels_check(o));
+    ISO_TRY(iso_events_new(&w->events, o));
+    ISO_TRY(ISO_ALLOCATE(w->text, o->text ? TEXT_SIZE : 1));
+    w->text[0] = '\0';
+    return ISO_OK;
 }
 
 iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
@@ -209,13 +233,10 @@ iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
         return iso_no_memory(sizeof *w);
     memset(w, 0, offsetof(iso_gcode_writer, head));
     w->options = *options;
-    w->words = iso_flavour_get_words(options->flavour);
-    w->fan = -1;
-    iso_lines_start(&w->lines, output);
-    iso_head_start(&w->head, &w->lines, &w->options);
-    if (options->layer_text && !(w->layer_text = iso_allocate(LAYER_TEXT_SIZE))) {
+    iso_status status = writer_start(w, output);
+    if (status != ISO_OK) {
         iso_gcode_writer_free(w);
-        return iso_no_memory(LAYER_TEXT_SIZE);
+        return status;
     }
     *writer = w;
     return ISO_OK;
@@ -226,35 +247,69 @@ void iso_gcode_writer_free(iso_gcode_writer *w) {
         return;
     iso_progress_free(&w->progress);
     iso_release(w->length);
-    iso_release(w->layer_text);
+    iso_release(w->text);
+    iso_events_free(&w->events);
     iso_release(w);
+}
+
+/* Does the text heat the nozzle, or the bed, by itself? */
+static int heats_nozzle(const iso_gcode_writer *w, const char *text) {
+    return iso_text_has_command(text, "M104") || iso_text_has_command(text, "M109") ||
+           (w->options.flavour == ISO_FLAVOUR_REPRAPFIRMWARE && iso_text_has_command(text, "G10"));
+}
+
+static int heats_bed(const char *text) {
+    return iso_text_has_command(text, "M140") || iso_text_has_command(text, "M190");
+}
+
+/* What holds from the start text on. */
+static iso_status put_ways(iso_gcode_writer *w) {
+    char *p = iso_put_text(iso_lines_reserve(&w->lines), w->words->units);
+    iso_lines_accept(&w->lines, p);
+    const char *way = w->head.relative_e ? w->words->relative_e : w->words->absolute_e;
+    if (way)
+        put_line(w, way);
+    if (w->options.use_volumetric_e && w->words->volumetric) {
+        int64_t diameter = (int64_t)(w->options.filament_diameter * 1000 + 0.5);
+        p = iso_flavour_put(iso_lines_reserve(&w->lines), w->words->volumetric, diameter, 3);
+        iso_lines_accept(&w->lines, iso_put_newline(p));
+    }
+    return put_text(w, ISO_TEXT_START_FILAMENT);
+}
+
+/* The start text: the one given, or the one asked for. */
+static iso_status start_text(const char **text, iso_gcode_writer *w) {
+    *text = w->options.start_gcode;
+    if (*text)
+        return ISO_OK;
+    *text = w->text;
+    return ask_text(w, ISO_TEXT_START);
 }
 
 iso_status iso_gcode_begin(iso_gcode_writer *w) {
     const iso_gcode_options *o = &w->options;
-    const char *start = o->start_gcode ? o->start_gcode : "";
-    int bed = o->first_layer_bed_temperature > 0 && !iso_text_has_command(start, "M140") &&
-              !iso_text_has_command(start, "M190");
-    int nozzle = o->first_layer_temperature > 0 && !iso_text_has_command(start, "M104") &&
-                 !iso_text_has_command(start, "M109");
+    const char *start;
     char date[ISO_DATE_SIZE];
+    ISO_TRY(start_text(&start, w));
     iso_text_date(date, o->timestamp);
     ISO_TRY(iso_output_print(w->lines.output, "; generated by %s on %s\n\n",
                              o->generator ? o->generator : "isoslice", date));
-    set_fan(w, 0);
-    if (bed)
-        say(w, w->words->bed_wait, o->first_layer_bed_temperature);
-    if (nozzle)
-        say(w, w->words->nozzle, o->first_layer_temperature);
+    iso_labels_define(&w->lines, o);
+    if (o->emit_machine_limits)
+        iso_modes_say_limits(&w->head.modes, &o->limits);
+    iso_modes_set_fan(&w->head.modes, 0);
+    if (!heats_bed(start))
+        iso_modes_heat_bed(&w->head.modes, o->first_layer_bed_temperature, 1);
+    if (!heats_nozzle(w, start))
+        iso_modes_heat_nozzle(&w->head.modes, o->first_layer_temperature, 0);
     ISO_TRY(mark_progress(w));
-    iso_lines_accept(&w->lines, ISO_PUT(iso_lines_reserve(&w->lines), ";TYPE:Custom\n"));
+    put_line(w, ";TYPE:Custom");
     ISO_TRY(put_user_text(w, start));
-    if (nozzle)
-        say(w, w->words->nozzle_wait, o->first_layer_temperature);
-    char *p =
-        ISO_PUT(iso_lines_reserve(&w->lines), "G21 ; millimetres\nG90 ; absolute coordinates\n");
-    p = iso_put_text(p, o->use_relative_e_distances ? w->words->relative_e : w->words->absolute_e);
-    iso_lines_accept(&w->lines, iso_put_newline(p));
+    if (!heats_nozzle(w, start))
+        iso_modes_heat_nozzle(&w->head.modes, o->first_layer_temperature, 1);
+    w->head.modes.nozzle = o->first_layer_temperature;
+    w->head.modes.bed = o->first_layer_bed_temperature;
+    ISO_TRY(put_ways(w));
     return iso_lines_flush(&w->lines);
 }
 
@@ -265,7 +320,11 @@ static void sum_up(iso_gcode_totals *totals, iso_gcode_writer *w) {
     *totals = (iso_gcode_totals){.filament_mm = mm,
                                  .filament_cm3 = mm * section / 1000,
                                  .filament_g = mm * section / 1000 * w->options.filament_density,
+                                 .filament_cost = mm * section / 1e6 * w->options.filament_density *
+                                                  w->options.filament_cost,
                                  .time = w->head.planner.time,
+                                 .first_layer_time = w->layers > 1 ? w->head.planner.mark_time
+                                                                   : w->head.planner.time,
                                  .idle_time = w->head.planner.idle_time,
                                  .bead_mm = w->head.bead_mm,
                                  .travel_mm = w->head.travel_mm,
@@ -281,23 +340,42 @@ static void put_figure(iso_gcode_writer *w, const char *name, double value) {
     iso_lines_accept(&w->lines, iso_put_newline(p));
 }
 
+static void put_time(iso_gcode_writer *w, const char *name, double seconds) {
+    char *p = ISO_PUT(iso_lines_reserve(&w->lines), "; ");
+    p = ISO_PUT(iso_put_text(p, name), " (normal mode) = ");
+    p = iso_text_put_duration(p, (int64_t)seconds);
+    iso_lines_accept(&w->lines, iso_put_newline(p));
+}
+
+static void put_figures(iso_gcode_writer *w, const iso_gcode_totals *sum) {
+    put_figure(w, "filament used [mm]", sum->filament_mm);
+    put_figure(w, "filament used [cm3]", sum->filament_cm3);
+    put_figure(w, "filament used [g]", sum->filament_g);
+    if (sum->filament_cost > 0)
+        put_figure(w, "filament cost", sum->filament_cost);
+    put_figure(w, "total filament used [g]", sum->filament_g);
+    put_figure(w, "total filament cost", sum->filament_cost);
+    put_time(w, "estimated printing time", sum->time);
+    put_time(w, "estimated first layer printing time", sum->first_layer_time);
+}
+
 iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *w,
                             iso_gcode_config_lines *config, void *payload) {
     iso_gcode_totals sum;
     iso_head_retract(&w->head);
-    set_fan(w, 0);
+    iso_modes_set_fan(&w->head.modes, 0);
     sum_up(&sum, w);
-    iso_lines_accept(&w->lines, ISO_PUT(iso_lines_reserve(&w->lines), ";TYPE:Custom\n"));
-    ISO_TRY(put_user_text(w, w->options.end_gcode));
+    put_line(w, ";TYPE:Custom");
+    if (w->options.use_volumetric_e)
+        iso_modes_say(&w->head.modes, w->words->volumetric, 0, "E in mm again");
+    ISO_TRY(put_text(w, ISO_TEXT_END_FILAMENT));
+    if (w->options.end_gcode)
+        ISO_TRY(put_user_text(w, w->options.end_gcode));
+    else
+        ISO_TRY(put_text(w, ISO_TEXT_END));
     if (w->options.remaining_times && w->words->progress)
         iso_lines_accept(&w->lines, iso_progress_put_line(iso_lines_reserve(&w->lines), 100, 0));
-    put_figure(w, "filament used [mm]", sum.filament_mm);
-    put_figure(w, "filament used [cm3]", sum.filament_cm3);
-    put_figure(w, "filament used [g]", sum.filament_g);
-    put_figure(w, "total filament used [g]", sum.filament_g);
-    char *p = ISO_PUT(iso_lines_reserve(&w->lines), "; estimated printing time (normal mode) = ");
-    p = iso_text_put_duration(p, (int64_t)sum.time);
-    iso_lines_accept(&w->lines, iso_put_newline(p));
+    put_figures(w, &sum);
     ISO_TRY(iso_lines_flush(&w->lines));
     if (config) {
         ISO_TRY(iso_output_print(w->lines.output, "\n; prusaslicer_config = begin\n"));

@@ -3,6 +3,7 @@
  *     iso_gcode_writer_new(&writer, output, &options)
  *     iso_gcode_begin(writer)
  *     iso_gcode_layer(writer, &layer)              once a layer, from the bed up
+ *     iso_gcode_next_object(writer, object)        only between objects printed one by one
  *     iso_gcode_finish(&totals, writer, config, payload)
  *     iso_gcode_writer_free(writer)                always
  *
@@ -19,7 +20,7 @@ typedef struct iso_gcode_writer iso_gcode_writer;
 
 typedef struct iso_gcode_layer_info {
     int32_t index;          /* 0 on the bed */
-    int32_t z, height;      /* units: its top, and how high it is */
+    int32_t z, height;      /* units: its top, z_offset included, and how high it is */
     const iso_paths *paths; /* in printing order (iso_order_layer) */
 } iso_gcode_layer_info;
 
@@ -33,6 +34,10 @@ void iso_gcode_writer_free(iso_gcode_writer *writer); /* NULL is allowed */
 iso_status iso_gcode_begin(iso_gcode_writer *writer) ISO_MUST_CHECK;
 iso_status iso_gcode_layer(iso_gcode_writer *writer,
                            const iso_gcode_layer_info *layer) ISO_MUST_CHECK;
+
+/* What comes is another object, from its first layer (index 0) on: the nozzle rises above all that
+ * was printed and comes down where the object begins. Events at heights came with the first one. */
+iso_status iso_gcode_next_object(iso_gcode_writer *writer, int32_t object) ISO_MUST_CHECK;
 
 /* `config` may be NULL: then there is no config block. */
 iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *writer,

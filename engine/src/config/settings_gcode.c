@@ -1,0 +1,191 @@
+/* Options turned into those of the G-code. */
+#include <isoslice/version.h>
+
+#include "config/placeholder.h"
+#include "config/settings.h"
+
+/* The flow of the thinnest bead whose speed is 0 at max_print_speed: at that flow all such beads
+ * stay below it. Gap fill and ironing have speeds of their own. */
+static double auto_flow(const iso_options *options) {
+    static const iso_role roles[] = {
+        ISO_ROLE_EXTERNAL_PERIMETER, ISO_ROLE_PERIMETER,        ISO_ROLE_INTERNAL_INFILL,
+        ISO_ROLE_SOLID_INFILL,       ISO_ROLE_TOP_SOLID_INFILL, ISO_ROLE_BRIDGE_INFILL,
+    };
+    double least = 0, height = options->layer_height;
+    for (size_t i = 0; i < sizeof roles / sizeof *roles; i++) {
+        bool small = i < 2 && !(iso_options_speed(options, roles[i], true, false) > 0);
+        if (iso_options_speed(options, roles[i], false, false) > 0 && !small)
+            continue;
+        double width = iso_options_width(options, roles[i], false, height);
+        double area = iso_bead_of(iso_units(width), iso_units(height)).area * 1e-8; /* mm^2 */
+        least = least > 0 && least < area ? least : area;
+    }
+    return least * options->max_print_speed;
+}
+
+static double lower(double a, double b) {
+    return a > 0 && (a < b || !(b > 0)) ? a : b;
+}
+
+static void set_speeds(iso_gcode_options *g, const iso_options *options) {
+    for (int role = 0; role < ISO_ROLE_COUNT; role++) {
+        g->speed[role] = iso_options_speed(options, (iso_role)role, false, false);
+        g->first_layer_speed[role] = iso_options_speed(options, (iso_role)role, false, true);
+    }
+    g->small_perimeter_speed = iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, false);
+    g->first_layer_small_perimeter_speed =
+        iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, true);
+    g->max_print_speed = options->max_print_speed;
+    g->auto_flow = auto_flow(options);
+    g->max_volumetric_speed =
+        lower(options->max_volumetric_speed, options->filament_max_volumetric_speed);
+    g->travel_speed = options->travel_speed;
+    g->travel_speed_z = options->travel_speed_z;
+}
+
+/* Roles without one of their own take that of the more general ones. */
+static void set_accelerations(iso_gcode_options *g, const iso_options *options) {
+    double *of = g->role_acceleration;
+    of[ISO_ROLE_PERIMETER] = options->perimeter_acceleration;
+    of[ISO_ROLE_EXTERNAL_PERIMETER] = options->external_perimeter_acceleration;
+    of[ISO_ROLE_INTERNAL_INFILL] = options->infill_acceleration;
+    of[ISO_ROLE_SOLID_INFILL] = options->solid_infill_acceleration;
+    of[ISO_ROLE_TOP_SOLID_INFILL] = options->top_solid_infill_acceleration;
+    of[ISO_ROLE_BRIDGE_INFILL] = of[ISO_ROLE_OVERHANG_PERIMETER] = options->bridge_acceleration;
+    static const iso_role general[][2] = {{ISO_ROLE_EXTERNAL_PERIMETER, ISO_ROLE_PERIMETER},
+                                          {ISO_ROLE_OVERHANG_PERIMETER, ISO_ROLE_PERIMETER},
+                                          {ISO_ROLE_SOLID_INFILL, ISO_ROLE_INTERNAL_INFILL},
+                                          {ISO_ROLE_TOP_SOLID_INFILL, ISO_ROLE_SOLID_INFILL},
+                                          {ISO_ROLE_IRONING, ISO_ROLE_SOLID_INFILL},
+                                          {ISO_ROLE_BRIDGE_INFILL, ISO_ROLE_SOLID_INFILL}};
+    for (size_t i = 0; i < sizeof general / sizeof *general; i++)
+        if (!(of[general[i][0]] > 0))
+            of[general[i][0]] = of[general[i][1]];
+    g->default_acceleration = options->default_acceleration;
+    g->first_layer_acceleration = options->first_layer_acceleration;
+    g->travel_acceleration = options->travel_acceleration;
+}
+
+static void set_cooling(iso_gcode_options *g, const iso_options *options) {
+    g->cooling = options->cooling;
+    g->fan_always_on = options->fan_always_on;
+    g->min_fan_speed = options->min_fan_speed;
+    g->max_fan_speed = options->max_fan_speed;
+    g->bridge_fan_speed = options->bridge_fan_speed;
+    g->disable_fan_first_layers = options->disable_fan_first_layers;
+    g->full_fan_speed_layer = options->full_fan_speed_layer;
+    g->fan_below_layer_time = options->fan_below_layer_time;
+    g->slowdown_below_layer_time = options->slowdown_below_layer_time;
+    g->min_print_speed = options->min_print_speed;
+}
+
+/* If they are to be ignored, those of an ordinary machine remain for the estimate. Legacy Marlin
+ * has no junction deviation, and one acceleration for beads and travel. */
+static void set_limits(iso_gcode_options *g, const iso_options *o) {
+    if (o->machine_limits_usage == ISO_LIMITS_IGNORE)
+        return;
+    g->emit_machine_limits = o->machine_limits_usage == ISO_LIMITS_EMIT;
+    g->limits = (iso_machine_limits){
+        .feedrate = {o->machine_max_feedrate_x, o->machine_max_feedrate_y,
+                     o->machine_max_feedrate_z, o->machine_max_feedrate_e},
+        .acceleration = {o->machine_max_acceleration_x, o->machine_max_acceleration_y,
+                         o->machine_max_acceleration_z, o->machine_max_acceleration_e},
+        .jerk = {o->machine_max_jerk_x, o->machine_max_jerk_y, o->machine_max_jerk_z,
+                 o->machine_max_jerk_e},
+        .extruding = o->machine_max_acceleration_extruding,
+        .retracting = o->machine_max_acceleration_retracting,
+        .travel = o->machine_max_acceleration_travel,
+        .junction_deviation = o->machine_max_junction_deviation};
+    if (g->flavour == ISO_FLAVOUR_MARLIN) {
+        g->limits.travel = g->limits.extruding;
+        g->limits.junction_deviation = 0;
+    }
+}
+
+static void set_machine(iso_gcode_options *g, const iso_options *options) {
+    g->flavour = (iso_flavour)options->gcode_flavor;
+    g->use_relative_e_distances = options->use_relative_e_distances;
+    g->use_volumetric_e = options->use_volumetric_e;
+    g->use_firmware_retraction = options->use_firmware_retraction;
+    g->temperature = options->temperature;
+    g->first_layer_temperature = options->first_layer_temperature;
+    g->bed_temperature = options->bed_temperature;
+    g->first_layer_bed_temperature = options->first_layer_bed_temperature;
+    g->z_offset = options->z_offset;
+}
+
+static void set_filament(iso_gcode_options *g, const iso_options *options) {
+    g->filament_diameter = options->filament_diameter;
+    g->filament_density = options->filament_density;
+    g->filament_cost = options->filament_cost;
+    g->extrusion_multiplier = options->extrusion_multiplier;
+    g->retract_length = options->retract_length;
+    g->retract_speed = options->retract_speed;
+    g->deretract_speed = options->deretract_speed;
+    g->retract_restart_extra = options->retract_restart_extra;
+    g->retract_before_travel = options->retract_before_travel;
+    g->retract_lift = options->retract_lift;
+}
+
+static const char *text_of(const iso_options *options, iso_gcode_text_kind kind) {
+    switch (kind) {
+    case ISO_TEXT_START:
+        return options->start_gcode;
+    case ISO_TEXT_END:
+        return options->end_gcode;
+    case ISO_TEXT_START_FILAMENT:
+        return options->start_filament_gcode;
+    case ISO_TEXT_END_FILAMENT:
+        return options->end_filament_gcode;
+    case ISO_TEXT_BEFORE_LAYER:
+        return options->before_layer_gcode;
+    case ISO_TEXT_LAYER:
+        return options->layer_gcode;
+    case ISO_TEXT_BETWEEN_OBJECTS:
+        return options->between_objects_gcode;
+    case ISO_TEXT_COLOR_CHANGE:
+        return options->color_change_gcode;
+    case ISO_TEXT_PAUSE:
+        return options->pause_print_gcode;
+    case ISO_TEXT_TEMPLATE:
+        return options->template_custom_gcode;
+    default:
+        return "";
+    }
+}
+
+static iso_status expand_text(char *text, size_t size, const void *payload,
+                              iso_gcode_text_kind kind, const iso_gcode_place *place) {
+    const iso_options *options = payload;
+    const iso_placeholder of_place[] = {
+        {"layer_num", place->layer}, {"layer_z", place->z}, {"max_layer_z", place->max_z}};
+    return iso_placeholders_fill(text, size, text_of(options, kind), options, of_place, 3);
+}
+
+static void set_texts(iso_gcode_options *g, const iso_options *options) {
+    g->text = expand_text;
+    g->text_payload = options;
+    g->events = options->events;
+    g->colorprint_height = options->colorprint_heights.value;
+    g->colorprint_count = options->colorprint_heights.count;
+    g->gcode_comments = options->gcode_comments;
+    g->remaining_times = options->remaining_times;
+    g->labels = (iso_label_style)options->gcode_label_objects;
+}
+
+iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
+                                    int64_t timestamp) {
+    iso_gcode_options g = iso_gcode_defaults();
+    set_machine(&g, options);
+    set_speeds(&g, options);
+    set_accelerations(&g, options);
+    set_cooling(&g, options);
+    set_limits(&g, options);
+    set_filament(&g, options);
+    set_texts(&g, options);
+    g.start_gcode = start;
+    g.end_gcode = end;
+    g.generator = "isoslice " ISO_VERSION;
+    g.timestamp = timestamp;
+    return g;
+}
