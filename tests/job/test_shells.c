@@ -67,7 +67,7 @@ static void test_sparse_is_covered(void) {
             int before = check_failures;
             snprintf(settings, sizeof settings,
                      "top_solid_layers = %d\nbottom_solid_layers = %d\nperimeters = 1\n"
-                     "layer_height = 0.2\nfill_density = 40%%",
+                     "layer_height = 0.2\nfill_density = 40%%\nsolid_infill_below_area = 0",
                      shells[c].top, shells[c].bottom);
             print_shape(&p, &s, settings);
             check_shells(&p, &s, shells[c].top, shells[c].bottom);

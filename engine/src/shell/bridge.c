@@ -10,7 +10,7 @@
 #include "planar/scratch.h"
 
 enum {
-    STEP = 5,  /* degrees between directions */
+    STEP = 10, /* degrees between directions */
     EDGES = 4, /* longest edges of the part, whose own directions are tried as well */
     CANDIDATES_MAX = 1 + 180 / STEP + EDGES,
     LINES_MIN = 16, /* lines of a sweep */

@@ -2,11 +2,25 @@
 
 #include "planar/island.h"
 #include "planar/region.h"
+#include "planar/predicate.h"
 #include "planar/scratch.h"
+#include "shell/mask.h"
 
 /* Operands of a cover's arrangement, and of the last one, which puts the shells together. */
 enum { FILL, COVER };
 enum { SHELL_TOP = 1, SHELL_ABOVE, SHELL_BELOW };
+
+#define LID_CELLS 3.5 /* cells of a mask in the width of the narrowest lid */
+
+enum { THINNING = 32 }; /* outlines that reach out are thinned by this part of how far they do */
+
+static int32_t most(int32_t a, int32_t b) {
+    return a > b ? a : b;
+}
+
+static int32_t fewest(int32_t a, int32_t b) {
+    return a < b ? a : b;
+}
 
 void iso_shell_free(iso_shell *shell) {
     iso_region_free(&shell->top);
@@ -59,15 +73,26 @@ static bool is_exposed(const iso_winding *w, const void *context) {
     return w->of[FILL] > 0 && w->of[COVER] < side->count;
 }
 
+/* Grow the region. The shells are cut out of the fill, whose own edge stays: it is thinned first,
+ * since long round offsets of fine outlines cross themselves again and again. */
+static iso_status reach_out(iso_region *region, iso_region *spare, int32_t distance,
+                            iso_planar_scratch *scratch) {
+    iso_offset_options grow = iso_offset_defaults(distance);
+    ISO_TRY(iso_region_simplify(spare, region, distance / THINNING, scratch));
+    return iso_offset(region, spare, &grow, scratch);
+}
+
 /* Drop what is too narrow to print and let the rest reach out a little. */
 static iso_status trim(iso_region *region, iso_region *spare, int32_t narrowest, int32_t anchor,
                        iso_planar_scratch *scratch) {
     iso_offset_options shrink = iso_offset_defaults(-narrowest / 2);
-    iso_offset_options grow = iso_offset_defaults(narrowest / 2 + anchor);
     if (region->count == 0)
         return ISO_OK;
     ISO_TRY(iso_offset(spare, region, &shrink, scratch));
-    return iso_offset(region, spare, &grow, scratch);
+    if (spare->count == 0)
+        return copy_region(region, spare);
+    ISO_TRY(reach_out(spare, region, narrowest / 2 + anchor, scratch));
+    return copy_region(region, spare);
 }
 
 /* The part of the fill that one side leaves bare. One side at a time: its cover rarely comes near
@@ -122,9 +147,13 @@ static iso_status expose_all(iso_shell *shell, const iso_region *fill,
     ISO_TRY(expose(&shell->bridge, around->below.layers > 0 ? &shell->sparse : fill, &beneath,
                    scratch));
     iso_region *spare = &shell->spare;
-    ISO_TRY(trim(&shell->top, spare, options->narrowest, options->anchor, scratch));
-    ISO_TRY(trim(&shell->solid, spare, options->narrowest, options->anchor, scratch));
-    ISO_TRY(trim(&shell->sparse, spare, options->narrowest, options->anchor, scratch));
+    int32_t narrowest = options->narrowest, anchor = options->anchor;
+    if (next.missing == 0 || above.missing == 0) /* else all of the fill */
+        ISO_TRY(trim(&shell->top, spare, narrowest, anchor, scratch));
+    if (above.missing == 0)
+        ISO_TRY(trim(&shell->solid, spare, narrowest, anchor, scratch));
+    if (below.missing == 0)
+        ISO_TRY(trim(&shell->sparse, spare, narrowest, anchor, scratch));
     return trim(&shell->bridge, spare, options->bridge_least, options->bridge_anchor, scratch);
 }
 
@@ -264,17 +293,51 @@ iso_status iso_shell_split(iso_shell *shell, const iso_region *fill,
 
 /* ---- lids ---- */
 
-/* Where the sparse fill, shrunk, meets the solid part is well over it. On slopes the two only
- * overlap by a strip along their edges, so that mostly nothing collides. */
+/* Is any of the solid part so far within the sparse fill that there may be a lid? On slopes the two
+ * only overlap by a strip along their edges, which is nothing. A disc of radius `least` / 2 holds a
+ * cell and its neighbours, wherever it lies. */
+static iso_status may_be_lid(bool *may, iso_box *where, const iso_region *solid,
+                             const iso_region *sparse, int32_t least, iso_arena *arena) {
+    iso_box a, b;
+    iso_mask mask[2];
+    int32_t cell = (int32_t)(least / LID_CELLS) > 0 ? (int32_t)(least / LID_CELLS) : 1;
+    *may = false;
+    if (!region_box(&a, solid) || !region_box(&b, sparse) || !boxes_meet(&a, &b))
+        return ISO_OK;
+    *where = (iso_box){{most(a.min.x, b.min.x), most(a.min.y, b.min.y)},
+                       {fewest(a.max.x, b.max.x), fewest(a.max.y, b.max.y)}};
+    ISO_TRY(mask_of(&mask[0], solid, where, cell, arena));
+    ISO_TRY(mask_of(&mask[1], sparse, where, cell, arena));
+    *may = mask[0].cell > cell || masks_share_core(where, &mask[0], &mask[1]);
+    return ISO_OK;
+}
+
+/* What of the region lies in the box or less than `margin` around it. */
+static iso_status clip(iso_region *out, const iso_region *region, const iso_box *box,
+                       int32_t margin, iso_planar_scratch *scratch) {
+    iso_point low = {box->min.x - margin, box->min.y - margin};
+    iso_point high = {box->max.x + margin, box->max.y + margin};
+    iso_point corner[] = {low, {high.x, low.y}, high, {low.x, high.y}};
+    int32_t first[] = {0, 4}, parent[] = {-1};
+    iso_region frame = {.count = 1, .first = first, .point = corner, .parent = parent};
+    return iso_boolean(out, ISO_INTERSECTION, region, &frame, scratch);
+}
+
+/* Where the sparse fill, shrunk, meets the solid part is well over it. */
 static iso_status find_lids(iso_shell *shell, const iso_region *sparse_below, int32_t least,
                             int32_t anchor, iso_planar_scratch *scratch) {
+    bool may;
+    iso_box where;
     iso_offset_options shrink = iso_offset_defaults(-least);
-    iso_offset_options grow = iso_offset_defaults(least + anchor);
-    ISO_TRY(iso_offset(&shell->spare, sparse_below, &shrink, scratch));
-    ISO_TRY(iso_boolean(&shell->rest, ISO_INTERSECTION, &shell->solid, &shell->spare, scratch));
-    if (shell->rest.count == 0)
+    ISO_TRY(may_be_lid(&may, &where, &shell->solid, sparse_below, least, &scratch->arena));
+    if (!may)
         return ISO_OK;
-    ISO_TRY(iso_offset(&shell->lid, &shell->rest, &grow, scratch));
+    ISO_TRY(clip(&shell->rest, sparse_below, &where, 3 * least, scratch));
+    ISO_TRY(iso_offset(&shell->spare, &shell->rest, &shrink, scratch));
+    ISO_TRY(iso_boolean(&shell->lid, ISO_INTERSECTION, &shell->solid, &shell->spare, scratch));
+    if (shell->lid.count == 0)
+        return ISO_OK;
+    ISO_TRY(reach_out(&shell->lid, &shell->spare, least + anchor, scratch));
     ISO_TRY(cut(&shell->lid, &shell->rest, &shell->solid, scratch));
     return copy_region(&shell->solid, &shell->rest);
 }
@@ -284,7 +347,9 @@ iso_status iso_shell_find_lids(iso_shell *shell, const iso_region *sparse_below,
     iso_region_clear(&shell->lid);
     if (!sparse_below || sparse_below->count == 0 || shell->solid.count == 0)
         return ISO_OK;
+    iso_arena_mark mark = iso_arena_get_mark(&scratch->arena);
     iso_status status = find_lids(shell, sparse_below, least, anchor, scratch);
+    iso_arena_pop(&scratch->arena, mark);
     if (status != ISO_OK) {
         iso_region_clear(&shell->lid);
         iso_region_clear(&shell->solid);
