@@ -66,11 +66,12 @@ void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *o
     iso_head_forget_place(head);
 }
 
-void iso_head_begin_layer(iso_head *head, int32_t z) {
+void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height) {
     if (head->modes.words->reset_e)
         head->e = 0;
     head->layer_z = z;
-    head->role = head->width = UNKNOWN;
+    head->role = head->width = head->area = UNKNOWN;
+    head->height = head->layer_height = height;
 }
 
 void iso_head_forget_place(iso_head *head) {
@@ -296,10 +297,27 @@ static const char *comment_of(int32_t role) {
     return comment[role];
 }
 
-static char *put_width(iso_head *head, char *p, int32_t width) {
-    head->width = width;
-    p = iso_put_decimal(ISO_PUT(p, ";WIDTH:"), width, 4);
-    return iso_put_newline(p);
+/* Threads through the air are round, and infill of several layers is as high as they are: a stadium
+ * of width w and height h has the area w h - (1 - pi / 4) h^2. Others are as high as the layer. */
+static int32_t height_of(const iso_head *head, const iso_path_vertex *bead) {
+    const double corners = 1 - pi / 4;
+    if (!iso_role_is_bridge(bead->role) && bead->role != ISO_ROLE_INTERNAL_INFILL)
+        return head->layer_height;
+    double w = bead->width, rest = w * w - 4 * corners * bead->area;
+    double height = rest < 0 ? w : (w - sqrt(rest)) / (2 * corners);
+    return height < 1.3 * head->layer_height ? head->layer_height : (int32_t)(height + 0.5);
+}
+
+static char *put_bead(iso_head *head, char *p, const iso_path_vertex *bead) {
+    int32_t height = height_of(head, bead);
+    head->area = bead->area;
+    if (bead->width != head->width)
+        p = iso_put_newline(iso_put_decimal(ISO_PUT(p, ";WIDTH:"), bead->width, 4));
+    head->width = bead->width;
+    if (height != head->height)
+        p = iso_put_newline(iso_put_decimal(ISO_PUT(p, ";HEIGHT:"), height, 4));
+    head->height = height;
+    return p;
 }
 
 /* From where the machine is to `to`, leaving a bead of `length` units and section `area`. A segment
@@ -311,8 +329,8 @@ static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point 
     if (x == head->x && y == head->y && z == head->z)
         return;
     char *p = iso_lines_reserve(head->lines);
-    if (from->width != head->width)
-        p = put_width(head, p, from->width);
+    if (from->width != head->width || from->area != head->area)
+        p = put_bead(head, p, from);
     p = ISO_PUT(p, "G1 X");
     p = iso_put_thousandths(p, x);
     p = ISO_PUT(p, " Y");

@@ -34,7 +34,9 @@ typedef struct iso_head {
     int64_t e;           /* last digits since E was reset */
     int64_t drawn;       /* E to have been extruded by now, with fraction */
     int64_t emitted;     /* E that was, in last digits */
-    int32_t role, width; /* last said in comments */
+    int32_t role, width, height; /* last said in comments */
+    int32_t area;                /* of the bead last drawn */
+    int32_t layer_height;        /* units */
     int retracted;
 
     double bead_mm, travel_mm;
@@ -45,8 +47,8 @@ typedef struct iso_head {
 /* The lines and options are the caller's and must outlive the head. */
 void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *options);
 
-/* E begins at 0 again; role and width are to be said anew. */
-void iso_head_begin_layer(iso_head *head, int32_t z);
+/* E begins at 0 again; role and width are to be said anew, the height, in units, has just been. */
+void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height);
 
 /* Somebody else moved it. */
 void iso_head_forget_place(iso_head *head);

@@ -167,7 +167,7 @@ static iso_status begin_layer(iso_gcode_writer *w, const iso_gcode_layer_info *l
     ISO_TRY(put_text(w, ISO_TEXT_BEFORE_LAYER));
     if (w->words->reset_e)
         put_line(w, w->words->reset_e);
-    iso_head_begin_layer(&w->head, layer->z);
+    iso_head_begin_layer(&w->head, layer->z, layer->height);
     return put_layer_text(w);
 }
 
