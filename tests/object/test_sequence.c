@@ -23,7 +23,7 @@ static void test_order(void) {
         return;
     for (int i = 0; i < 6; i++)
         instance[i] = (iso_instance){i / 2, i % 2, {iso_units(50.0 * i), 0}};
-    if (CHECK_OK(iso_objects_sequence(&all, &objects, &(iso_clearance){30, 10}))) {
+    if (CHECK_OK(iso_objects_sequence(&all, &objects, &(iso_clearance){30, 20}))) {
         static const int object[] = {1, 1, 2, 2, 0, 0};
         for (int i = 0; i < 6; i++) {
             CHECK_EQUAL(object[i], instance[i].object);

@@ -2,6 +2,7 @@
 
 #include "base/sort.h"
 #include "object/hull.h"
+#include "object/lattice.h"
 #include "planar/predicate.h"
 #include "planar/region.h"
 
@@ -12,26 +13,26 @@
  * first.
  *
  * What is best decides how much fits, and nothing is best for all shapes: first around the middle,
- * which leaves the bed's edge free; if that doesn't do, towards each corner of the bed, by rows and
- * by columns. */
+ * which leaves the bed's edge free; if that doesn't do, towards each corner of the bed, by rows, by
+ * columns and diagonally, and in a lattice. */
 
 enum {
     SLACK = 6,    /* units that outlines may be too near, so that a place that just fits is one */
-    EDGE = 1,     /* unit that the bed's edge keeps, against rounding */
     THIN = 300,   /* units by which outlines may be thickened to have fewer corners */
     MARGINS = 500 /* units a round join may reach too far */
 };
 
-typedef enum direction { AROUND, ROWS, COLUMNS } direction;
+typedef enum direction { AROUND, ROWS, COLUMNS, DIAGONAL, LATTICE } direction;
 
 typedef struct plan {
     direction direction;
     int sign_x, sign_y;
 } plan;
 
-static const plan plans[] = {{AROUND, 0, 0},   {ROWS, 1, 1},     {COLUMNS, 1, 1},
-                             {ROWS, -1, 1},    {ROWS, 1, -1},    {ROWS, -1, -1},
-                             {COLUMNS, -1, 1}, {COLUMNS, 1, -1}, {COLUMNS, -1, -1}};
+static const plan plans[] = {
+    {AROUND, 0, 0},   {ROWS, 1, 1},      {COLUMNS, 1, 1},   {LATTICE, 1, 1},   {ROWS, -1, 1},
+    {ROWS, 1, -1},    {ROWS, -1, -1},    {COLUMNS, -1, 1},  {COLUMNS, 1, -1},  {COLUMNS, -1, -1},
+    {DIAGONAL, 1, 1}, {DIAGONAL, -1, 1}, {DIAGONAL, 1, -1}, {DIAGONAL, -1, -1}};
 
 enum { PLANS = sizeof plans / sizeof *plans };
 
@@ -142,8 +143,8 @@ static void consider(choice *best, const plan *p, iso_point target, iso_point at
         minor = 0;
     } else {
         int64_t x = (int64_t)at.x * p->sign_x, y = (int64_t)at.y * p->sign_y;
-        major = p->direction == ROWS ? y : x;
-        minor = p->direction == ROWS ? x : y;
+        major = p->direction == COLUMNS ? x : p->direction == DIAGONAL ? x + y : y;
+        minor = p->direction == COLUMNS ? y : x;
     }
     bool better = major != best->major   ? major < best->major
                   : minor != best->minor ? minor < best->minor
@@ -202,9 +203,9 @@ static iso_status subtract(nester *n) {
     return ISO_OK;
 }
 
-/* Where the shape may stand among all that are placed already, which are those before it in turn.
- */
-static iso_status find_free(nester *n, int32_t turn) {
+/* Where the shape may stand among all that are placed already: those before it in turn, and `own`
+ * copies of its own. */
+static iso_status find_free(nester *n, int32_t turn, int32_t own) {
     const kind *k = &n->kind[n->turn[turn]];
     iso_region_clear(&n->free);
     for (int32_t c = 0; c < k->inside.count; c++) {
@@ -217,7 +218,18 @@ static iso_status find_free(nester *n, int32_t turn) {
         for (int32_t i = n->first[other]; i < n->first[other + 1]; i++)
             ISO_TRY(add_obstacle(n, &n->kind[other], n->by[i], k));
     }
+    for (int32_t i = 0; i < own; i++)
+        ISO_TRY(add_obstacle(n, k, n->by[n->first[n->turn[turn]] + i], k));
     return subtract(n);
+}
+
+/* The largest shape in even rows, among nothing else. */
+static iso_status place_rows(int32_t *placed, nester *n, iso_point target) {
+    int32_t s = n->turn[0];
+    const kind *k = &n->kind[s];
+    iso_lattice_space space = {.apart = n->sum, .inside = &k->inside, .target = target};
+    space.corners = hull_difference(n->sum, k->wide, k->wide_count, k->thin, k->thin_count);
+    return lattice_places(n->by + n->first[s], placed, n->first[s + 1] - n->first[s], &space);
 }
 
 static iso_status follow(int32_t *placed, int32_t *left, nester *n, const plan *p) {
@@ -226,8 +238,12 @@ static iso_status follow(int32_t *placed, int32_t *left, nester *n, const plan *
         int32_t s = *left = n->turn[t];
         const kind *k = &n->kind[s];
         iso_point target = {n->nest->target.x - k->middle.x, n->nest->target.y - k->middle.y};
-        ISO_TRY(find_free(n, t));
-        for (int32_t i = n->first[s]; i < n->first[s + 1]; i++, ++*placed) {
+        int32_t done = 0;
+        if (t == 0 && p->direction == LATTICE)
+            ISO_TRY(place_rows(&done, n, target));
+        ISO_TRY(find_free(n, t, done));
+        *placed += done;
+        for (int32_t i = n->first[s] + done; i < n->first[s + 1]; i++, ++*placed) {
             choice best = choose(n, p, target);
             if (!best.found)
                 return ISO_OK;

@@ -10,6 +10,9 @@ void iso_instances_free(iso_instances *instances) {
     *instances = (iso_instances){0};
 }
 
+/* Units that the bed is smaller, so that nothing is rounded beyond its edge. */
+enum { ROUNDING = 2 };
+
 typedef struct placer {
     const iso_placing *placing;
     iso_objects *objects;
@@ -84,7 +87,8 @@ static iso_status place_grid(placer *p) {
     return ISO_OK;
 }
 
-/* The bed less its margin. */
+/* The bed less its margin. Many copies of what fills it by chance still fit: nesting is easy on the
+ * distance between them. */
 static iso_status make_bed(iso_region *bed, iso_region *raw, const placer *p) {
     iso_point *point;
     ISO_TRY(ISO_ALLOCATE(point, p->placing->bed_count));
@@ -93,10 +97,8 @@ static iso_status make_bed(iso_region *bed, iso_region *raw, const placer *p) {
     iso_status status = iso_region_add(raw, point, p->placing->bed_count);
     iso_release(point);
     ISO_TRY(status);
-    if (p->placing->margin == 0)
-        return iso_region_clean(bed, raw, ISO_FILL_NONZERO, p->scratch);
     iso_region whole = {0};
-    iso_offset_options options = iso_offset_defaults(-iso_units(p->placing->margin));
+    iso_offset_options options = iso_offset_defaults(-iso_units(p->placing->margin) - ROUNDING);
     status = iso_region_clean(&whole, raw, ISO_FILL_NONZERO, p->scratch);
     if (status == ISO_OK)
         status = iso_offset(bed, &whole, &options, p->scratch);
