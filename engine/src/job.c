@@ -47,7 +47,7 @@ typedef struct iso_job {
     iso_order_state order;
     iso_output *output;
     iso_gcode_writer *writer;
-    char *start, *end;           /* expanded texts */
+    iso_texts texts;
     int32_t empty, lowest_empty; /* layers without a path, and the first of them */
     double seconds[ISO_STAGE_COUNT];
     int64_t bytes[ISO_STAGE_COUNT]; /* of each stage's output, at its largest */
@@ -235,8 +235,8 @@ static iso_status write_layer(iso_job *job, int32_t index) {
     if (index == 0)
         ISO_TRY(check_skirt(job, &layer->paths));
     iso_order_options order = settings_of_order(job->options);
-    ISO_TRY(iso_order_layer(&job->ordered, &layer->paths, &job->order, &order,
-                            &job->hand[0].arena));
+    ISO_TRY(
+        iso_order_layer(&job->ordered, &layer->paths, &job->order, &order, &job->hand[0].arena));
     double ordered = iso_stage_clock();
     if (job->ordered.count == 0 && job->empty++ == 0)
         job->lowest_empty = index;
@@ -329,14 +329,20 @@ static iso_status config_lines(iso_output *output, void *payload) {
     return iso_options_print(block->options, config_line, output);
 }
 
+static iso_status begin_texts(iso_job *job) {
+    const iso_macro_job known = {.input_filename = job->report->input[0].path,
+                                 .timestamp = job->hooks->timestamp,
+                                 .object_count = job->model_count,
+                                 .instance_count = job->model_count,
+                                 .layer_count = job->levels.count};
+    texts_begin(&job->texts, job->options, &known);
+    ISO_TRY(texts_place(&job->texts, job->slices, job->model_count));
+    return texts_check(&job->texts, job->levels.top[job->levels.count - 1]);
+}
+
 static iso_status begin_output(iso_job *job, const char *path) {
-    const iso_options *options = job->options;
-    ISO_TRY(ISO_ALLOCATE(job->start, ISO_TEXT_SIZE));
-    ISO_TRY(ISO_ALLOCATE(job->end, ISO_TEXT_SIZE));
-    ISO_TRY(iso_options_expand(job->start, ISO_TEXT_SIZE, options->start_gcode, options));
-    ISO_TRY(iso_options_expand(job->end, ISO_TEXT_SIZE, options->end_gcode, options));
-    iso_gcode_options gcode =
-        settings_of_gcode(options, job->start, job->end, job->hooks->timestamp);
+    ISO_TRY(begin_texts(job));
+    iso_gcode_options gcode = settings_of_gcode(job->options, &job->texts, job->hooks->timestamp);
     ISO_TRY(iso_output_open(&job->output, path));
     ISO_TRY(iso_gcode_writer_new(&job->writer, job->output, &gcode));
     return iso_gcode_begin(job->writer);
@@ -384,8 +390,7 @@ static void job_free(iso_job *job) {
     iso_release(job->mesh);
     iso_release(job->slices);
     iso_release(job->hand);
-    iso_release(job->start);
-    iso_release(job->end);
+    texts_free(&job->texts);
     iso_pool_free(job->pool);
 }
 

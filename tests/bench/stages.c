@@ -295,7 +295,7 @@ static void order_all(void *payload) {
 
 static void write_all(void *payload) {
     bench_stages *s = payload;
-    iso_gcode_options options = settings_of_gcode(s->part.options, "", "", 0);
+    iso_gcode_options options = settings_of_gcode(s->part.options, NULL, 0);
     iso_output *output;
     iso_gcode_writer *writer;
     bench_must(iso_output_open(&output, s->scratch_path), s->scratch_path);

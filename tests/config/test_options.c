@@ -347,13 +347,13 @@ static void test_speeds_follow_prusaslicers_rules(void) {
 static void test_percent_of_the_first_layer_is_of_each_speed(void) {
     iso_options_defaults(&options);
     CHECK_OK(iso_options_set(&options, "first_layer_speed", "40%", "test"));
-    iso_gcode_options gcode = settings_of_gcode(&options, "", "", 0);
+    iso_gcode_options gcode = settings_of_gcode(&options, NULL, 0);
     CHECK_NEAR(12, gcode.first_layer_speed[ISO_ROLE_EXTERNAL_PERIMETER], 1e-12);
     CHECK_NEAR(24, gcode.first_layer_speed[ISO_ROLE_PERIMETER], 1e-12);
     CHECK_NEAR(32, gcode.first_layer_speed[ISO_ROLE_INTERNAL_INFILL], 1e-12);
     CHECK_NEAR(6, gcode.first_layer_small_perimeter_speed, 1e-12);
     CHECK_OK(iso_options_set(&options, "first_layer_speed", "25", "test"));
-    gcode = settings_of_gcode(&options, "", "", 0);
+    gcode = settings_of_gcode(&options, NULL, 0);
     CHECK_NEAR(25, gcode.first_layer_speed[ISO_ROLE_INTERNAL_INFILL], 1e-12);
     CHECK_NEAR(25, gcode.first_layer_small_perimeter_speed, 1e-12);
 }
@@ -419,7 +419,9 @@ static void test_placeholders_of_a_layer(void) {
     CHECK_OK(iso_options_set(&options, "z_offset", "0.5", "test"));
     CHECK_OK(
         iso_options_set(&options, "layer_gcode", ";L [layer_num] {layer_z} [temperature]", ""));
-    iso_gcode_options gcode = settings_of_gcode(&options, "", "", 0);
+    iso_texts texts = {0};
+    texts_begin(&texts, &options, NULL);
+    iso_gcode_options gcode = settings_of_gcode(&options, &texts, 0);
     const iso_gcode_place place = {.layer = 7, .z = 0.35, .max_z = 0.35};
     CHECK_OK(gcode.text(out, sizeof out, gcode.text_payload, ISO_TEXT_BEFORE_LAYER, &place));
     CHECK(strcmp(out, "") == 0);
@@ -430,6 +432,7 @@ static void test_placeholders_of_a_layer(void) {
     CHECK_STATUS(ISO_BAD_CONFIG,
                  gcode.text(out, sizeof out, gcode.text_payload, ISO_TEXT_LAYER, &place));
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_expand(out, sizeof out, "[layer_num]", &options));
+    texts_free(&texts);
 }
 
 static void test_misspelt_words_are_near_and_others_are_not(void) {

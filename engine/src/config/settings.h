@@ -7,6 +7,8 @@
 #include <isoslice/shell.h>
 #include <isoslice/wall.h>
 
+#include "config/texts.h"
+
 #include "path/order.h"
 
 /* What a layer's paths are made with. */
@@ -21,8 +23,8 @@ typedef struct iso_layer_settings {
     iso_overhang_options overhang; /* reach 0: none */
     int32_t has_sparse;            /* else the area within the shells stays empty */
     iso_fill_options sparse;       /* .z is not set */
-    int32_t skirt_loops;    /* first layer only */
-    int32_t skirt_distance; /* units, to the middle of the innermost loop */
+    int32_t skirt_loops;           /* first layer only */
+    int32_t skirt_distance;        /* units, to the middle of the innermost loop */
     iso_bead skirt;
 } iso_layer_settings;
 
@@ -36,8 +38,9 @@ iso_shell_depth settings_of_shells(const iso_options *options);
 
 iso_order_options settings_of_order(const iso_options *options);
 
-/* Start and end texts must already be expanded; they and the options must outlive the result. */
-iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
+/* The texts, begun, and the options must outlive the result. NULL: no texts, not even of the start
+ * and the end. */
+iso_gcode_options settings_of_gcode(const iso_options *options, const iso_texts *texts,
                                     int64_t timestamp);
 
 #endif

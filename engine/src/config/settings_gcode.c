@@ -1,7 +1,6 @@
 /* Options turned into those of the G-code. */
 #include <isoslice/version.h>
 
-#include "config/placeholder.h"
 #include "config/settings.h"
 
 /* The flow of the thinnest bead whose speed is 0 at max_print_speed: at that flow all such beads
@@ -127,44 +126,10 @@ static void set_filament(iso_gcode_options *g, const iso_options *options) {
     g->retract_lift = options->retract_lift;
 }
 
-static const char *text_of(const iso_options *options, iso_gcode_text_kind kind) {
-    switch (kind) {
-    case ISO_TEXT_START:
-        return options->start_gcode;
-    case ISO_TEXT_END:
-        return options->end_gcode;
-    case ISO_TEXT_START_FILAMENT:
-        return options->start_filament_gcode;
-    case ISO_TEXT_END_FILAMENT:
-        return options->end_filament_gcode;
-    case ISO_TEXT_BEFORE_LAYER:
-        return options->before_layer_gcode;
-    case ISO_TEXT_LAYER:
-        return options->layer_gcode;
-    case ISO_TEXT_BETWEEN_OBJECTS:
-        return options->between_objects_gcode;
-    case ISO_TEXT_COLOR_CHANGE:
-        return options->color_change_gcode;
-    case ISO_TEXT_PAUSE:
-        return options->pause_print_gcode;
-    case ISO_TEXT_TEMPLATE:
-        return options->template_custom_gcode;
-    default:
-        return "";
-    }
-}
-
-static iso_status expand_text(char *text, size_t size, const void *payload,
-                              iso_gcode_text_kind kind, const iso_gcode_place *place) {
-    const iso_options *options = payload;
-    const iso_placeholder of_place[] = {
-        {"layer_num", place->layer}, {"layer_z", place->z}, {"max_layer_z", place->max_z}};
-    return iso_placeholders_fill(text, size, text_of(options, kind), options, of_place, 3);
-}
-
-static void set_texts(iso_gcode_options *g, const iso_options *options) {
-    g->text = expand_text;
-    g->text_payload = options;
+static void set_texts(iso_gcode_options *g, const iso_options *options, const iso_texts *texts) {
+    g->text = texts ? texts_write : NULL;
+    g->text_payload = texts;
+    g->start_gcode = g->end_gcode = texts ? NULL : "";
     g->events = options->events;
     g->colorprint_height = options->colorprint_heights.value;
     g->colorprint_count = options->colorprint_heights.count;
@@ -173,7 +138,7 @@ static void set_texts(iso_gcode_options *g, const iso_options *options) {
     g->labels = (iso_label_style)options->gcode_label_objects;
 }
 
-iso_gcode_options settings_of_gcode(const iso_options *options, const char *start, const char *end,
+iso_gcode_options settings_of_gcode(const iso_options *options, const iso_texts *texts,
                                     int64_t timestamp) {
     iso_gcode_options g = iso_gcode_defaults();
     set_machine(&g, options);
@@ -182,9 +147,7 @@ iso_gcode_options settings_of_gcode(const iso_options *options, const char *star
     set_cooling(&g, options);
     set_limits(&g, options);
     set_filament(&g, options);
-    set_texts(&g, options);
-    g.start_gcode = start;
-    g.end_gcode = end;
+    set_texts(&g, options, texts);
     g.generator = "isoslice " ISO_VERSION;
     g.timestamp = timestamp;
     return g;
