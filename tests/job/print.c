@@ -139,7 +139,8 @@ static void read_comment(reader *r, const char *line, size_t length) {
         r->unbroken = 0;
     } else if (!strncmp(line, ";Z:", 3) && p->level_count > 0) {
         p->level[p->level_count - 1].z = strtod(line + 3, NULL);
-    } else if (!strncmp(line, ";HEIGHT:", 8) && p->level_count > 0) {
+    } else if (!strncmp(line, ";HEIGHT:", 8) && p->level_count > 0 &&
+               p->level[p->level_count - 1].height == 0) { /* further ones are of single beads */
         p->level[p->level_count - 1].height = strtod(line + 8, NULL);
     }
 }
