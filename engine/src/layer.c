@@ -158,6 +158,7 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
     ISO_TRY(iso_offset(&hand->inside, part, &inset, hand->planar));
     ISO_TRY(check(&hand->inside, hand));
     grouped.like.group = group;
+    grouped.margin = f->layer->settings.fill_inset;
     return iso_fill(&f->layer->paths, &hand->inside, &grouped, &hand->arena, hand->planar);
 }
 

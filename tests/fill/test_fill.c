@@ -43,6 +43,7 @@ static iso_fill_options bare_options(double spacing, double angle, int fit) {
     options.angle = angle;
     options.fit = fit;
     options.link_max = (int32_t)(5 * spacing);
+    options.margin = (int32_t)(spacing / 2);
     options.deviation = options.shortest = 0;
     return options;
 }
@@ -173,6 +174,7 @@ static void test_beads_stay_inside(void) {
             shapes[i].make(&region, 10 * k);
             iso_fill_options options = bare_options(16000, 37 * k, k % 2);
             options.deviation = k < 2 ? 0 : 100;
+            options.margin = 0; /* nothing to fill beyond the boundary */
             CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
             int outside = 0;
             for (int p = 0; p < paths.count; p++)
@@ -250,7 +252,8 @@ static int line_places(double *place, const iso_region *region, double spacing) 
     return count;
 }
 
-/* Fitted lines lie on edges that run along them, and half a gap from corners and round ends. */
+/* Fitted lines lie half a gap from the edge of what is to be full where it runs along them, and
+ * half a gap within the region's corners and round ends. */
 static void test_fitted_lines(void) {
     static const iso_point square[] = {{0, 7}, {99999, 7}, {99999, 90007}, {0, 90007}};
     static const iso_point tent[] = {{0, 0}, {200000, 0}, {100000, 90000}};
@@ -260,12 +263,12 @@ static void test_fitted_lines(void) {
     add_points(&region, square, 4, -1);
     CHECK_EQUAL(10, line_places(place, &region, 9800)); /* 9.18 gaps */
     for (int i = 0; i < 10; i++)
-        CHECK_NEAR(7 + i * 10000, place[i], 2.5);
+        CHECK_NEAR(7 - 4900 + (i + 0.5) * 9980, place[i], 2.5);
     drop_region(&region);
     add_points(&region, tent, 3, -1);
     CHECK_EQUAL(10, line_places(place, &region, 9800));
     for (int i = 0; i < 10; i++)
-        CHECK_NEAR(i * 90000 / 9.5, place[i], 2.5);
+        CHECK_NEAR(i * (90000 - 94900 / 20.0) / 9, place[i], 2.5);
     drop_region(&region);
     add_points(&region, drop, 4, -1);
     CHECK_EQUAL(9, line_places(place, &region, 9800)); /* 91000 high, 9.29 gaps */

@@ -31,7 +31,7 @@ static void hatch_region(trial *bench, const iso_region *region, double angle, d
     int64_t step = (int64_t)(spacing * 256) << 23;
     iso_hatch_extent(&extent, &part, &bench->sweep, spacing);
     if (fit)
-        iso_sweep_fit(&bench->sweep, step, &extent);
+        iso_sweep_fit(&bench->sweep, step, step / 2, &extent);
     else
         iso_sweep_repeat(&bench->sweep, step, 0, &extent);
     CHECK_OK(iso_hatch_build(&bench->hatch, &part, &bench->sweep, room, &bench->arena));

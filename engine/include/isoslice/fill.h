@@ -1,9 +1,10 @@
 /* Fill: lines or curves over a region, joined along its boundary.
  *
  * The region is where the middles of the beads may go, so it is already inset by the caller; for a
- * solid fill by half a spacing from the edge of what is to be full. Lines end on its boundary, and
- * a link between two lines follows the boundary: with every second end linked, the links and the
- * half spacing around the region hold the same volume. */
+ * solid fill by `margin` from the edge of what is to be full: half a spacing, or less, so that ends
+ * bond with what is around. Lines end on its boundary, and a link between two lines follows it,
+ * with just the flow that fills the margin. Beside a wall fitted lines are as wide as what is left.
+ */
 #ifndef ISOSLICE_FILL_H
 #define ISOSLICE_FILL_H
 
@@ -46,9 +47,11 @@ typedef struct iso_fill_options {
     int32_t fit;      /* nonzero: no phase; every part's lines are spread over its extent, their
                        * spacing, flow and width changed (n lines: by about 1/2n at most) to fill it */
     int32_t width, area; /* of the bead, units and units^2 */
-    int32_t link_max;    /* units; longest piece of boundary that joins two lines; 0 = none */
-    int32_t anchor;      /* units; what is drawn of a longer one at the end of a path; 0 = none */
-    int32_t monotonic;   /* nonzero: lines one after another, each to the left of those before */
+    int32_t even;        /* nonzero: but all lines stay as wide as each other, even beside a wall */
+    int32_t margin;    /* units, with `fit`: from the region's edge to that of what is to be full */
+    int32_t link_max;  /* units; longest piece of boundary that joins two lines; 0 = none */
+    int32_t anchor;    /* units; what is drawn of a longer one at the end of a path; 0 = none */
+    int32_t monotonic; /* nonzero: lines one after another, each to the left of those before */
     int32_t deviation; /* units; a link goes straight if the boundary is nowhere further from it */
     int32_t shortest;  /* units; paths shorter than this are left out */
     iso_path like;     /* role, tool, speed class, object, group and rank of the paths */
@@ -78,8 +81,9 @@ ISO_API int iso_fill_pattern_is_solid(iso_fill_pattern pattern);
 ISO_API double iso_fill_pattern_turn(iso_fill_pattern pattern, int32_t index);
 
 /* Straight lines alone, whatever the pattern. Every piece of a sweep line inside the region is
- * drawn exactly once. Ends lie within a unit of the boundary. O(points + crossings), and sorting on
- * each line. ISO_USAGE for options or a region out of their range; on failure `out` is as before.
+ * drawn exactly once. Ends lie within a unit of the boundary, fitted ones without a link up to the
+ * margin (two at grazing angles) beyond it. O(points + crossings), and sorting on each line.
+ * ISO_USAGE for options or a region out of their range; on failure `out` is as before.
  */
 ISO_API iso_status iso_fill_rectilinear(iso_paths *out, const iso_region *region,
                                         const iso_fill_options *options,

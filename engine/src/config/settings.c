@@ -92,8 +92,7 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
         s->sparse.anchor = iso_units(iso_relative_of(options->infill_anchor, width));
         s->sparse.link_max = iso_units(iso_relative_of(options->infill_anchor_max, width));
     }
-    s->fill_inset = solid.spacing / 2;
-    s->wall.fill_inset = -overlap_of(s, options, first, height);
+    s->fill_inset = solid.spacing / 2 - overlap_of(s, options, first, height);
 }
 
 /* Threads through the air are round, as thick as the nozzle, and lie a little apart; else they are
@@ -116,6 +115,7 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
     iso_bead bead = bridge_bead(options, ISO_ROLE_SOLID_INFILL, first, height);
     iso_bead wall = bridge_bead(options, ISO_ROLE_PERIMETER, first, height);
     s->bridge = iso_fill_defaults(bead, 1);
+    s->bridge.even = 1;
     s->bridge.angle = s->solid.angle;
     s->bridge.like = s->solid.like;
     s->bridge.like.role = ISO_ROLE_BRIDGE_INFILL;

@@ -14,6 +14,7 @@ iso_fill_options iso_fill_defaults(iso_bead bead, double density) {
         .density = solid ? 1 : density,
         .width = bead.width,
         .area = bead.area,
+        .margin = (int32_t)(spacing / 2),
         .link_max = link < ISO_COORDINATE_MAX ? (int32_t)link : ISO_COORDINATE_MAX,
         .deviation = DEVIATION,
         .shortest = bead.width / 2,

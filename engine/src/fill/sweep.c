@@ -56,25 +56,29 @@ void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, const is
     sweep->count = to < from ? 0 : (int32_t)(to - from + 1);
 }
 
-/* The height that fitted lines have to fill. */
-static int64_t fitted_height(int64_t spacing, const iso_extent *extent) {
-    return extent->high - extent->low + (extent->low_flat + extent->high_flat) * (spacing / 2);
+/* Two lines share what is higher than 1.4 spacings: one alone would be too wide. */
+static int32_t fitted_count(int64_t spacing, int64_t height) {
+    if (height < 2 * spacing)
+        return height > spacing * 7 / 5 ? 2 : 1;
+    return (int32_t)((height + spacing / 2) / spacing);
 }
 
-void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, const iso_extent *extent) {
+void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t margin, const iso_extent *extent) {
     /* An edge along the lines is straight to a unit only, so a line on it keeps two units off. */
-    int64_t inset = 2 * ISO_SWEEP_ONE, flats = extent->low_flat + extent->high_flat;
-    int64_t count = (fitted_height(spacing, extent) + spacing / 2) / spacing;
-    int64_t low = extent->low + extent->low_flat * inset;
-    int64_t high = extent->high - extent->high_flat * inset;
-    sweep->count = count > 1 ? (int32_t)count : 1;
-    if (count <= 1) { /* too thin for more than a line */
+    int64_t inset = 2 * ISO_SWEEP_ONE;
+    int64_t from = extent->low - (extent->low_flat ? margin : 0);
+    int64_t to = extent->high + (extent->high_flat ? margin : 0);
+    sweep->count = fitted_count(spacing, to - from);
+    if (sweep->count == 1) {
         sweep->first = (extent->low + (extent->high - extent->low) / 2) | 1;
         sweep->step = spacing;
         return;
     }
-    sweep->step = (2 * (high - low) / (2 * count - flats)) & ~(int64_t)1;
-    sweep->first = (low + (extent->low_flat ? 0 : sweep->step / 2)) | 1;
+    int64_t half = (to - from) / sweep->count / 2, low = from + half, high = to - half;
+    low = low < extent->low + inset ? extent->low + inset : low;
+    high = high > extent->high - inset ? extent->high - inset : high;
+    sweep->step = ((high - low) / (sweep->count - 1)) & ~(int64_t)1;
+    sweep->first = low | 1;
 }
 
 double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options,
@@ -87,8 +91,7 @@ double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options,
         iso_sweep_repeat(sweep, spacing, phase, extent);
         return 1;
     }
-    iso_sweep_fit(sweep, spacing, extent);
-    if (sweep->count == 1 && !(extent->low_flat && extent->high_flat))
-        return 1; /* a sliver: its line stands for little more than itself */
-    return (double)fitted_height(spacing, extent) / (double)spacing / sweep->count;
+    int64_t margin = options->margin > 0 ? options->margin * ISO_SWEEP_ONE : 0;
+    iso_sweep_fit(sweep, spacing, margin, extent);
+    return (double)sweep->step / (double)spacing;
 }

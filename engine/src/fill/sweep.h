@@ -36,13 +36,13 @@ typedef struct iso_extent {
 /* Lines every `spacing` from `phase` on, those within the extent. */
 void iso_sweep_repeat(iso_sweep *sweep, int64_t spacing, int64_t phase, const iso_extent *extent);
 
-/* Lines about `spacing` apart: on the edge where the extent is flat, half a gap from it where it is
- * round or a corner, since a line there would have no length. */
-void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, const iso_extent *extent);
+/* Lines about `spacing` apart, spread evenly over the extent, half a gap from its ends. Flat ones
+ * count as `margin` further out, so that nothing is left beside a line there; a line at a round end
+ * or a corner would have next to no length. None lies outside the extent. */
+void iso_sweep_fit(iso_sweep *sweep, int64_t spacing, int64_t margin, const iso_extent *extent);
 
-/* One or the other, as the options have it. Returns the share of a line's usual volume that each of
- * these lines draws: fitted ones share the extent and half a spacing beyond its flat ends; others
- * draw what is usual. */
+/* One or the other, as the options have it. Returns the distance between fitted lines as a part of
+ * the spacing asked for, which is their share of a line's usual volume; else 1. */
 double iso_sweep_place(iso_sweep *sweep, const iso_fill_options *options, const iso_extent *extent);
 
 #endif
