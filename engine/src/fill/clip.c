@@ -241,7 +241,10 @@ static iso_point place(const iso_clip *clip, double x, double y) {
 }
 
 static void finish_curve(iso_clip *clip) {
-    if (clip->started && clip->inside)
+    iso_clip_event *last = clip->block->event + clip->block->count - 1;
+    if (clip->started && clip->inside && clip->block->count && last->edge == ISO_CLIP_INNER)
+        last->edge = -1; /* the point that the curve ends in */
+    else if (clip->started && clip->inside)
         note(clip, clip->at, -1);
     clip->started = clip->inside = 0;
 }

@@ -166,7 +166,7 @@ static void find_wave(wave *w, const gyroid *g, int second, double tolerance) {
 /* 0.391315 is the mean length of the curves on unit area, over all heights, in frames where the
  * period is 2 pi: so much bead per area as the density says. */
 void iso_pattern_gyroid(iso_clip *clip, const iso_fill_options *options) {
-    enum { TOLERANCE = 150 }; /* units: 15 um */
+    enum { TOLERANCE = 200 }; /* units: 20 um */
     double scale = 0.391315 * options->spacing, period = 2 * pi * scale, range[4];
     gyroid g;
     iso_sine_cosine(&g.sine, &g.cosine, options->z / scale * (180 / pi));
