@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "check.h"
+#include "config/foreign.h"
 #include "config/value.h"
 
 static iso_options options;
@@ -56,25 +57,91 @@ static void test_an_empty_file_changes_nothing(void) {
 }
 
 static void test_unknown_keys_and_words_are_noted_once(void) {
-    CHECK_OK(read_ini("raft_layers = 1\nnotes = 0\nraft_layers = 0\nfill_pattern = lightning\n"
-                      "gcode_flavor = sailfish\nraft = 3\n"));
+    CHECK_OK(read_ini("raft_layers = 1\nthreads = 0\nraft_layers = 0\nfill_pattern = lightning\n"
+                      "gcode_flavor = unheard-of\nraft = 3\n"));
     CHECK_EQUAL(3, notes.unknown_count);
-    CHECK(strcmp(notes.unknown, "raft_layers, notes, raft") == 0);
+    CHECK(strcmp(notes.unknown, "raft_layers, threads, raft") == 0);
     CHECK_EQUAL(2, notes.unused_count);
-    CHECK(strcmp(notes.unused, "fill_pattern = lightning, gcode_flavor = sailfish") == 0);
+    CHECK(strcmp(notes.unused, "fill_pattern = lightning, gcode_flavor = unheard-of") == 0);
     CHECK_EQUAL(ISO_PATTERN_RECTILINEAR, options.fill_pattern);
+}
+
+static const char *foreign_value(const char *key) {
+    const char *value = iso_foreign_get(&options.foreign, key);
+    return value ? value : "(none)";
+}
+
+static void test_unknown_keys_are_kept_for_macros(void) {
+    CHECK_OK(read_ini("printer_model = MK3\nraft_layers = 1\nfilament_type = PLA;PETG\n"
+                      "printer_model = MINI\ninherits = x\nnotes =\n"));
+    CHECK(strcmp(foreign_value("printer_model"), "MINI") == 0);
+    CHECK(strcmp(foreign_value("filament_type"), "PLA;PETG") == 0);
+    CHECK(strcmp(foreign_value("raft_layers"), "1") == 0);
+    CHECK(strcmp(foreign_value("notes"), "") == 0);
+    CHECK(strcmp(foreign_value("inherits"), "(none)") == 0);
+    CHECK_EQUAL(1, notes.unknown_count); /* what only describes is no loss */
+    CHECK(strcmp(notes.unknown, "raft_layers") == 0);
+}
+
+static void test_foreign_values_are_bounded(void) {
+    static iso_foreign foreign, same;
+    static char value[40000];
+    memset(&foreign, 0, sizeof foreign);
+    memset(value, 'x', sizeof value - 1);
+    CHECK(iso_foreign_set(&foreign, "a", value));
+    CHECK(!iso_foreign_set(&foreign, "b", value));
+    CHECK(iso_foreign_get(&foreign, "b") == NULL);
+    CHECK(iso_foreign_set(&foreign, "b", "2"));
+    CHECK(!iso_foreign_set(&foreign, "b", value)); /* and the old value is gone */
+    CHECK(iso_foreign_get(&foreign, "b") == NULL);
+    CHECK(iso_foreign_set(&foreign, "b", "1"));
+    CHECK(iso_foreign_set(&foreign, "a", ""));
+    CHECK(strcmp(iso_foreign_get(&foreign, "b"), "1") == 0);
+    CHECK(strcmp(iso_foreign_get(&foreign, "a"), "") == 0);
+    CHECK(iso_foreign_set(&same, "b", "1"));
+    CHECK(iso_foreign_set(&same, "a", ""));
+    CHECK(memcmp(&foreign, &same, sizeof same) == 0);
+}
+
+static void test_quoted_texts_of_filaments_are_unquoted(void) {
+    CHECK_OK(read_ini("start_filament_gcode = \"; \\\"a\\\" \\\\ \\nM900 K0\";\"; second\"\n"
+                      "end_filament_gcode = ; plain; text\nstart_gcode = \"G28\"\n"));
+    CHECK(strcmp(options.start_filament_gcode, "; \"a\" \\ \nM900 K0") == 0);
+    CHECK(strcmp(options.end_filament_gcode, "; plain; text") == 0);
+    CHECK(strcmp(options.start_gcode, "\"G28\"") == 0);
+}
+
+static void test_the_filament_has_its_say_over_retraction(void) {
+    CHECK_OK(read_ini("filament_retract_length = 1.5,2\nretract_length = 3\nretract_lift = 0.4\n"
+                      "filament_retract_lift = nil\nfilament_wipe = 1\n"));
+    CHECK_NEAR(1.5, options.retract_length, 0);
+    CHECK_NEAR(0.4, options.retract_lift, 0);
+    CHECK(options.wipe);
+    CHECK_STATUS(ISO_BAD_CONFIG, read_ini("filament_retract_length = far\n"));
+}
+
+static void test_presets_names_are_kept(void) {
+    CHECK_OK(read_ini("[presets]\nprint = fine \\ \"1\"\nfilament = PLA \\ \"1\"\n"
+                      "[print:fine \\ \"1\"]\nlayer_height = 0.1\n"
+                      "[filament:PLA \\ \"1\"]\ntemperature = 210\n"));
+    CHECK(strcmp(foreign_value("print_settings_id"), "fine \\\\ \"1\"") == 0);
+    CHECK(strcmp(foreign_value("filament_settings_id"), "\"PLA \\\\ \\\"1\\\"\"") == 0);
+    char text[64];
+    CHECK_OK(
+        iso_options_expand(text, sizeof text, "{print_preset}|{filament_preset[0]}", &options));
+    CHECK(strcmp(text, "fine \\ \"1\"|PLA \\ \"1\"") == 0);
 }
 
 static void test_a_word_that_is_replaced_later_is_not_noted(void) {
     CHECK_OK(read_ini(
-        "fill_pattern = adaptivecubic\ngcode_flavor = sailfish\nfill_pattern = supportcubic\n"));
+        "fill_pattern = adaptivecubic\ngcode_flavor = unheard-of\nfill_pattern = supportcubic\n"));
     CHECK_EQUAL(2, notes.unused_count);
-    CHECK(strcmp(notes.unused, "gcode_flavor = sailfish, fill_pattern = supportcubic") == 0);
+    CHECK(strcmp(notes.unused, "gcode_flavor = unheard-of, fill_pattern = supportcubic") == 0);
     CHECK_OK(
-        read_ini("gcode_flavor = sailfish\nfill_pattern = adaptivecubic\nfill_pattern = grid\n"));
-    CHECK(strcmp(notes.unused, "gcode_flavor = sailfish") == 0);
-    CHECK_OK(read_ini("fill_pattern = a,b\ngcode_flavor = sailfish\nfill_pattern = grid\n"));
-    CHECK(strcmp(notes.unused, "gcode_flavor = sailfish") == 0);
+        read_ini("gcode_flavor = unheard-of\nfill_pattern = adaptivecubic\nfill_pattern = grid\n"));
+    CHECK(strcmp(notes.unused, "gcode_flavor = unheard-of") == 0);
+    CHECK_OK(read_ini("fill_pattern = a,b\ngcode_flavor = unheard-of\nfill_pattern = grid\n"));
+    CHECK(strcmp(notes.unused, "gcode_flavor = unheard-of") == 0);
     CHECK_OK(read_ini("gcode_flavor = fill_pattern\nfill_pattern = grid\n"));
     CHECK(strcmp(notes.unused, "gcode_flavor = fill_pattern") == 0);
     CHECK_OK(read_ini("fill_pattern = adaptivecubic\nfill_pattern = grid\n"));
@@ -258,6 +325,11 @@ int main(void) {
     RUN(test_a_flat_file_is_read);
     RUN(test_an_empty_file_changes_nothing);
     RUN(test_unknown_keys_and_words_are_noted_once);
+    RUN(test_unknown_keys_are_kept_for_macros);
+    RUN(test_foreign_values_are_bounded);
+    RUN(test_quoted_texts_of_filaments_are_unquoted);
+    RUN(test_the_filament_has_its_say_over_retraction);
+    RUN(test_presets_names_are_kept);
     RUN(test_a_word_that_is_replaced_later_is_not_noted);
     RUN(test_of_one_value_per_extruder_the_first_counts);
     RUN(test_failures_name_file_and_line_and_change_nothing);

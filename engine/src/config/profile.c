@@ -5,8 +5,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "config/foreign.h"
 #include "config/ini.h"
 #include "config/notes.h"
+#include "config/value.h"
+#include "macro/macro.h"
 
 enum {
     DEPTH_MAX = 32, /* of parents' parents; deeper is a circle */
@@ -34,11 +37,69 @@ static bool has_word(int32_t option, const char *value) {
     return false;
 }
 
+/* Keys that describe: nothing is printed otherwise for them, but macros may ask what they say. */
+static bool is_description(const char *key) {
+    static const char *const ends[] = {"_notes",   "_vendor",   "_model",        "_variant",
+                                       "_type",    "_colour",   "_settings_id",  "_profile",
+                                       "_texture", "_id",       "_spool_weight", "_condition",
+                                       "_prints",  "_printers", "_technology"};
+    static const char *const whole[] = {"notes", "inherits", "renamed_from", "prusaslicer_config"};
+    size_t length = strlen(key);
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
+        if (strcmp(key, whole[i]) == 0)
+            return true;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        if (length > strlen(ends[i]) && strcmp(key + length - strlen(ends[i]), ends[i]) == 0)
+            return true;
+    return false;
+}
+
+/* What only the choice of presets is about. */
+static bool is_of_presets(const char *key) {
+    return strncmp(key, "compatible_", 11) == 0 || strcmp(key, "inherits") == 0 ||
+           strcmp(key, "renamed_from") == 0 || strcmp(key, "prusaslicer_config") == 0;
+}
+
+static void note_foreign(const reader *from, const char *key, const char *value) {
+    if (!is_description(key))
+        iso_notes_add_unknown(from->notes, key);
+    if (!is_of_presets(key) && !iso_foreign_set(&from->options->foreign, key, value))
+        iso_notes_add_unused(from->notes, key, "(no room for more)");
+}
+
+/* The first of a list, one value per extruder: "a";"b" of texts, 1,2 of numbers. What is no list
+ * remains as it is. */
+static const char *first_value(char *first, size_t size, int32_t option, const char *value) {
+    const iso_option_info *info = iso_option_at(option);
+    const char *begin = value;
+    size_t length = strcspn(value, ",");
+    if (info->kind == ISO_VALUE_TEXT) {
+        if (*value != '"' || !iso_macro_is_text_list(info->key))
+            return value;
+        begin = value + 1;
+        for (length = 0; begin[length] && begin[length] != '"'; length++)
+            length += begin[length] == '\\' && begin[length + 1];
+    } else if (!is_numeric(info->kind) || value[length] == 0) {
+        return value;
+    }
+    if (length >= size)
+        return value;
+    memcpy(first, begin, length);
+    first[length] = 0;
+    return first;
+}
+
+static iso_status apply_value(reader *from, int32_t option, const char *value, int32_t number) {
+    char where[NAME_SIZE + 16], first[ISO_VALUE_TEXT_SIZE];
+    snprintf(where, sizeof where, number > 0 ? "%.255s:%d" : "%.255s", from->path, number);
+    return iso_options_set(from->options, iso_option_at(option)->key,
+                           first_value(first, sizeof first, option, value), where);
+}
+
 static iso_status apply_line(reader *from, const iso_ini_line *line) {
     int32_t option = iso_option_find(line->key);
     if (option < 0) {
-        if (strcmp(line->key, "inherits") != 0 && strcmp(line->key, "prusaslicer_config") != 0)
-            iso_notes_add_unknown(from->notes, line->key);
+        note_foreign(from, line->key, line->value);
         return ISO_OK;
     }
     if (iso_option_word(option, 0) && !has_word(option, line->value)) {
@@ -46,16 +107,26 @@ static iso_status apply_line(reader *from, const iso_ini_line *line) {
         return ISO_OK;
     }
     iso_notes_drop_unused(from->notes, line->key);
-    char where[NAME_SIZE + 16], first[64];
-    snprintf(where, sizeof where, line->number > 0 ? "%.255s:%d" : "%.255s", from->path,
-             line->number);
-    const char *value = line->value;
-    size_t length = strcspn(value, ",");
-    if (is_numeric(iso_option_at(option)->kind) && value[length] == ',' && length < sizeof first) {
-        snprintf(first, sizeof first, "%.*s", (int)length, value);
-        value = first;
+    return apply_value(from, option, line->value, line->number);
+}
+
+/* filament_retract_length and its like are the filament's say over the printer's retract_length;
+ * nil says nothing. */
+static iso_status apply_overrides(reader *from) {
+    static const char *const keys[] = {
+        "filament_retract_length",        "filament_retract_lift",
+        "filament_retract_lift_above",    "filament_retract_lift_below",
+        "filament_retract_speed",         "filament_deretract_speed",
+        "filament_retract_restart_extra", "filament_retract_before_travel",
+        "filament_retract_layer_change",  "filament_wipe",
+        "filament_retract_before_wipe"};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        const char *value = iso_foreign_get(&from->options->foreign, keys[i]);
+        int32_t option = iso_option_find(keys[i] + strlen("filament_"));
+        if (value && option >= 0 && strncmp(value, "nil", 3) != 0 && *value)
+            ISO_TRY(apply_value(from, option, value, 0));
     }
-    return iso_options_set(from->options, line->key, value, where);
+    return ISO_OK;
 }
 
 /* ---- sections ---- */
@@ -139,11 +210,34 @@ static iso_status fail_choice(const reader *from, const char *missing, const cha
                     from->path, from->path, names);
 }
 
+/* Macros may ask for the names of the presets. */
+static iso_status apply_preset(reader *from, const char *type, const char *name, int32_t index) {
+    char key[32], value[2 * NAME_SIZE + 4];
+    bool is_list = strcmp(type, "filament") == 0;
+    size_t n = 0;
+    if (is_list)
+        value[n++] = '"';
+    for (; *name && n < sizeof value - 4; name++) {
+        if (*name == '\\' || (*name == '"' && is_list))
+            value[n++] = '\\';
+        value[n++] = *name;
+    }
+    if (is_list)
+        value[n++] = '"';
+    value[n] = 0;
+    ISO_TRY(apply_section(from, index, 0));
+    snprintf(key, sizeof key, "%s_settings_id", type);
+    note_foreign(from, key, value);
+    return ISO_OK;
+}
+
 static iso_status apply_named(reader *from, const char *type, const char *name, size_t length) {
     char section[NAME_SIZE];
     snprintf(section, sizeof section, "%s:%.*s", type, (int)length, name);
     int32_t index = iso_ini_find(&from->ini, section);
-    return index < 0 ? fail_choice(from, section, type) : apply_section(from, index, 0);
+    if (index < 0)
+        return fail_choice(from, section, type);
+    return apply_preset(from, type, section + strlen(type) + 1, index);
 }
 
 /* The sections that [presets] of a bundle names, a missing one being a preset of the system. */
@@ -158,7 +252,7 @@ static iso_status apply_presets(reader *from, int32_t presets) {
             int32_t chosen = iso_ini_find(&from->ini, name);
             if (strcmp(line->key, section_type[t]) != 0 || chosen < 0)
                 continue;
-            ISO_TRY(apply_section(from, chosen, 0));
+            ISO_TRY(apply_preset(from, section_type[t], line->value, chosen));
             applied++;
         }
     }
@@ -211,6 +305,8 @@ iso_status iso_options_read(iso_options *options, const char *path, iso_config_n
     reader from = {&changed, notes, file, {0}};
     ISO_TRY(iso_ini_read(&from.ini, file));
     iso_status status = apply_file(&from, choice);
+    if (status == ISO_OK)
+        status = apply_overrides(&from);
     if (status == ISO_OK)
         *options = changed;
     iso_ini_free(&from.ini);

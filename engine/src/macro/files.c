@@ -49,6 +49,11 @@ static const known_key *find_known(const char *key) {
     return NULL;
 }
 
+bool iso_macro_is_text_list(const char *key) {
+    const known_key *row = find_known(key);
+    return row && row->kind == KEY_TEXTS;
+}
+
 /* ---- one value ---- */
 
 typedef struct slice {

@@ -53,4 +53,7 @@ iso_status iso_macro_expand(char *out, size_t size, const char *text, const char
 /* Check the form alone, in all branches. */
 iso_status iso_macro_check(const char *text, const char *name) ISO_MUST_CHECK;
 
+/* Does a file give the option of that key as a list of texts, "a";"b", one per extruder? */
+bool iso_macro_is_text_list(const char *key);
+
 #endif
