@@ -16,9 +16,9 @@ static double usual_speed(const iso_gcode_options *options, int slot, int32_t la
 }
 
 static void set_feed(iso_layer_pace *pace, int slot, int32_t feed) {
+    double most = pace->flow[slot] / feed * 60 * SQUARE_UNITS;
     pace->feed[slot] = feed;
-    pace->most_area[slot] =
-        pace->flow[slot] > 0 ? pace->flow[slot] / feed * 60 * SQUARE_UNITS : HUGE_VAL;
+    pace->most_area[slot] = most > 0 && most < INT32_MAX ? (int32_t)most : INT32_MAX;
 }
 
 int32_t iso_pace_limited_feed(const iso_layer_pace *pace, int slot, double area) {

@@ -29,9 +29,9 @@ typedef struct iso_layer_work {
 } iso_layer_work;
 
 typedef struct iso_layer_pace {
-    int32_t feed[ISO_SPEED_SLOTS]; /* mm/min */
-    /* units^2: sections beyond it are printed at flow / section, in mm^3/s */
-    double most_area[ISO_SPEED_SLOTS], flow[ISO_SPEED_SLOTS];
+    int32_t feed[ISO_SPEED_SLOTS];        /* mm/min */
+    int32_t most_area[ISO_SPEED_SLOTS];   /* units^2: larger sections are printed more slowly, */
+    double flow[ISO_SPEED_SLOTS];         /* by mm^3/s; 0: none is */
     int32_t acceleration[ISO_ROLE_COUNT]; /* mm/s^2 to tell; 0: nothing */
     int fan, bridge_fan;                  /* percent */
     double time;                          /* s */

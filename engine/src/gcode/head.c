@@ -360,7 +360,7 @@ void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
         return;
     blow(head, vertex[0].role, pace); /* it takes a while to turn faster */
     travel(head, path, way, vertex[0].at, head->layer_z + vertex[0].z);
-    int32_t role = UNKNOWN, feed = 0;
+    int32_t role = UNKNOWN, feed = 0, most = 0;
     int slot = 0;
     for (int32_t i = 0; i < segments; i++) {
         const iso_path_vertex *from = &vertex[i], *to = &vertex[i + 1 < path->count ? i + 1 : 0];
@@ -368,11 +368,10 @@ void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
             role = from->role;
             slot = iso_speed_slot(role, path->speed_class);
             feed = pace->feed[slot];
+            most = pace->most_area[slot];
             begin_piece(head, role, pace);
         }
-        int32_t own = from->area > pace->most_area[slot]
-                          ? iso_pace_limited_feed(pace, slot, from->area)
-                          : feed;
+        int32_t own = from->area > most ? iso_pace_limited_feed(pace, slot, from->area) : feed;
         draw_segment(head, from, to->at, head->layer_z + to->z, length[i], own);
     }
 }

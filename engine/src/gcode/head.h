@@ -25,15 +25,15 @@ typedef struct iso_head {
     int64_t retract_e, deretract_e;                                   /* last digits */
     int32_t travel_acceleration;                                      /* to tell; 0: nothing */
 
-    int32_t x, y;        /* um */
-    int32_t z;           /* units */
-    int32_t layer_z;     /* units */
-    int32_t above;       /* units: height of the next travel, over all that stands; or UNKNOWN */
-    int32_t feed;        /* mm/min */
-    double speed;        /* mm/s: the same */
-    int64_t e;           /* last digits since E was reset */
-    int64_t drawn;       /* E to have been extruded by now, with fraction */
-    int64_t emitted;     /* E that was, in last digits */
+    int32_t x, y;    /* um */
+    int32_t z;       /* units */
+    int32_t layer_z; /* units */
+    int32_t above;   /* units: height of the next travel, over all that stands; or UNKNOWN */
+    int32_t feed;    /* mm/min */
+    double speed;    /* mm/s: the same */
+    int64_t e;       /* last digits since E was reset */
+    int64_t drawn;   /* E to have been extruded by now, with fraction */
+    int64_t emitted; /* E that was, in last digits */
     int32_t role, width, height; /* last said in comments */
     int32_t area;                /* of the bead last drawn */
     int32_t layer_height;        /* units */

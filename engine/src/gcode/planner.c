@@ -113,6 +113,13 @@ static void limit_by_jerk(iso_planner *planner, iso_planner_block *block, const 
         planner->entry = block->rest;
 }
 
+/* Hardly a move needs it: those up, those of the filament alone, and where an axis is slow. */
+static void limit_by_axes(const iso_planner *planner, iso_planner_block *block,
+                          const double to[4]) {
+    block->speed = within(block->speed, to, planner->limits.feedrate);
+    block->acceleration = within(block->acceleration, to, planner->limits.acceleration);
+}
+
 void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
     if (!(move->length > 0) || !(move->speed > 0))
         return;
@@ -120,25 +127,25 @@ void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
         plan_backwards(planner);
         let_go(planner, ISO_PLANNER_WINDOW - ISO_PLANNER_AHEAD);
     }
-    double inverse = 1 / move->length, speed = move->speed, acceleration = move->acceleration;
+    double inverse = 1 / move->length;
     double x = move->dx * inverse, y = move->dy * inverse, z = move->dz * inverse;
     double filament = x == 0 && y == 0 && z == 0;
-    const double to[4] = {x, y, z, filament};
-    if (speed > planner->axes_speed || z != 0 || filament > 0)
-        speed = within(speed, to, planner->limits.feedrate);
-    if (acceleration > planner->axes_acceleration || z != 0 || filament > 0)
-        acceleration = within(acceleration, to, planner->limits.acceleration);
-    double before = planner->count > 0 ? planner->block[planner->count - 1].speed : 0;
-    double slower = smaller(before, speed);
-    iso_planner_block block = {.speed = speed,
-                               .acceleration = acceleration,
-                               .gain = 2 * acceleration * move->length,
-                               .extrudes = move->extrudes};
+    iso_planner_block *block = &planner->block[planner->count];
+    block->speed = move->speed;
+    block->acceleration = move->acceleration;
+    block->extrudes = move->extrudes;
+    block->rest = 0;
+    if (z != 0 || filament > 0 || move->speed > planner->axes_speed ||
+        move->acceleration > planner->axes_acceleration)
+        limit_by_axes(planner, block, (const double[4]){x, y, z, filament});
+    double before = planner->count > 0 ? block[-1].speed : 0;
+    double slower = smaller(before, block->speed);
+    block->gain = 2 * block->acceleration * move->length;
     if (planner->classic_jerk)
-        limit_by_jerk(planner, &block, to, slower);
+        limit_by_jerk(planner, block, (const double[4]){x, y, z, filament}, slower);
     else
-        block.limit = junction_squared(planner, x, y, z, acceleration, slower * slower);
-    planner->block[planner->count++] = block;
+        block->limit = junction_squared(planner, x, y, z, block->acceleration, slower * slower);
+    planner->count++;
     planner->x = x;
     planner->y = y;
     planner->z = z;
