@@ -257,6 +257,9 @@ static iso_status read_switch(iso_arguments *arguments, const argument *given) {
     case FLAG_travels:
         arguments->travels = on;
         break;
+    case FLAG_json:
+        arguments->json = on;
+        break;
     case FLAG_quiet:
         arguments->quiet = on;
         break;

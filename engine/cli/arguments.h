@@ -44,7 +44,7 @@ typedef struct iso_arguments {
     iso_verb verb;
     bool verb_given;
     iso_page page; /* to be printed instead of working */
-    bool strict, quiet, progress, timestamp, travels;
+    bool strict, quiet, progress, timestamp, travels, json;
     int32_t threads, columns;
     const char *output, *report; /* NULL if not given; borrowed from argv, as the files are */
     const char *const *file;

@@ -14,6 +14,7 @@ ISO_FLAG(report, 0, "FILE", S, "Write what was found, done and used as JSON; - i
 ISO_FLAG(threads, 0, "N", S, "Work with N threads; 0, as usual, takes one a processor.")
 ISO_FLAG(progress, 0, "", S, "Show progress; --no-progress doesn't. Usual on a terminal.")
 ISO_FLAG(timestamp, 0, "", S, "Write the real date into the G-code, instead of a constant one.")
+ISO_FLAG(json, 0, "", I, "Print as JSON what is found.")
 ISO_FLAG(layers, 0, "LIST", P, "Which layers to draw, as 1,20,-1; -1 is the last one.")
 ISO_FLAG(columns, 0, "N", P, "Layers drawn in a row.")
 ISO_FLAG(travels, 0, "", P, "Draw moves that don't print; --no-travels doesn't. Usual.")

@@ -10,12 +10,12 @@
 static const char *const verb_usage[] = {
     "isoslice [slice] [options] part.stl [more.stl...] [-o part.gcode]",
     "isoslice contours [options] part.stl [more.stl...] [-o part.mlk|part.json|part.svg]",
-    "isoslice info part.stl [more.stl...]",
+    "isoslice info [--json] part.stl [more.stl...]",
     "isoslice preview part.gcode [-o part.svg]",
 };
 
 static const char *const verb_help[] = {
-    "Slice models into G-code, all of them at once on one bed.",
+    "Slice models into G-code, all of them for one bed.",
     "Cut models into the contours of their layers: as a link file, as JSON or as a picture.",
     "Say how many triangles a model has, how large it is, and what is wrong with it.",
     "Draw layers of a G-code file as a picture.",

@@ -347,6 +347,15 @@ class Cli(unittest.TestCase):
         self.assertIn("size       20.000 x 15.000 x 10.000 mm", text)
         self.assertIn("volume     3000.000 mm3", text)
         self.assertIn("defects    none", text)
+        found = json.loads(self.run_it("info", "--json", "part.stl", "part.stl").stdout)
+        self.assertEqual(2, len(found))
+        self.assertEqual(found[0], found[1])
+        self.assertEqual(("part.stl", 12, 8, 1),
+                         tuple(found[0][k] for k in ("file", "triangles", "vertices", "shells")))
+        self.assertEqual([20, 15, 10], found[0]["size"])
+        self.assertAlmostEqual(3000, found[0]["volume"])
+        self.assertEqual({0}, set(found[0]["defects"].values()))
+        self.fails(4, "sheet.stl", "info", "--json", "part.stl", "sheet.stl")
 
     def test_preview(self):
         self.run_it("part.stl")

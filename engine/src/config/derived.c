@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "config/settings_objects.h"
 #include "config/value.h"
 
 double iso_options_first_height(const iso_options *options) {
@@ -158,6 +159,7 @@ iso_status iso_options_check(const iso_options *options) {
     if (options->min_fan_speed > options->max_fan_speed)
         return iso_fail(ISO_BAD_CONFIG, "min_fan_speed = %d is above max_fan_speed = %d",
                         options->min_fan_speed, options->max_fan_speed);
+    ISO_TRY(settings_check_objects(options));
     if (double_area(&options->bed_shape) == 0)
         return iso_fail(ISO_BAD_CONFIG, "bed_shape: the points lie on a line; give its corners one "
                                         "after the other around it");

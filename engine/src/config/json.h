@@ -4,6 +4,8 @@
 
 #include <stdbool.h>
 
+#include <isoslice/mesh.h>
+
 #include "base/output.h"
 
 typedef struct iso_json {
@@ -18,5 +20,8 @@ void iso_json_end(iso_json *json, char bracket);
 void iso_json_text(iso_json *json, const char *name, const char *text);
 void iso_json_integer(iso_json *json, const char *name, int64_t integer);
 void iso_json_number(iso_json *json, const char *name, double number);
+
+/* An object called "defects". */
+void iso_json_defects(iso_json *json, const iso_mesh_defects *defects);
 
 #endif

@@ -105,7 +105,7 @@ iso_status iso_report_add_stage(iso_report *report, const char *name, double sec
 
 /* ---- as JSON ---- */
 
-static void write_defects(iso_json *json, const iso_mesh_defects *defects) {
+void iso_json_defects(iso_json *json, const iso_mesh_defects *defects) {
     iso_json_begin(json, "defects", '{');
     iso_json_integer(json, "degenerate", defects->degenerate);
     iso_json_integer(json, "duplicate", defects->duplicate);
@@ -133,7 +133,7 @@ static void write_input(iso_json *json, const iso_report_input *input) {
     iso_json_end(json, ']');
     iso_json_number(json, "volume_mm3", input->volume);
     iso_json_integer(json, "memory_bytes", input->mesh_bytes);
-    write_defects(json, &input->defects);
+    iso_json_defects(json, &input->defects);
     iso_json_end(json, '}');
 }
 

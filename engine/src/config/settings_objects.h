@@ -1,0 +1,25 @@
+/* Settings of objects: options turned into what they are made, placed and sliced with. */
+#ifndef ISO_CONFIG_SETTINGS_OBJECTS_H
+#define ISO_CONFIG_SETTINGS_OBJECTS_H
+
+#include <isoslice/config.h>
+#include <isoslice/object.h>
+#include <isoslice/slice.h>
+
+/* Models keep their places to each other unless objects are arranged, copied, split or printed one
+ * by one. A grid takes them all as one. */
+iso_object_options settings_of_objects(const iso_options *options);
+
+/* Points into the options. */
+iso_placing settings_of_placing(const iso_options *options);
+
+/* For complete_objects. */
+iso_clearance settings_of_clearance(const iso_options *options);
+
+/* For adaptive_layers. */
+iso_adaptive_options settings_of_adaptive(const iso_options *options);
+
+/* Lists of the right length, heights in order; part of iso_options_check. */
+iso_status settings_check_objects(const iso_options *options) ISO_MUST_CHECK;
+
+#endif
