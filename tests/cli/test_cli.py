@@ -355,7 +355,7 @@ class Cli(unittest.TestCase):
         self.assertEqual([20, 15, 10], found[0]["size"])
         self.assertAlmostEqual(3000, found[0]["volume"])
         self.assertEqual({0}, set(found[0]["defects"].values()))
-        self.fails(4, "sheet.stl", "info", "--json", "part.stl", "sheet.stl")
+        self.assertEqual(b"", self.run_it("info", "--json", "part.stl", "none.stl", code=3).stdout)
 
     def test_preview(self):
         self.run_it("part.stl")
