@@ -17,6 +17,7 @@ typedef struct iso_layer_settings {
     iso_wall_options wall;
     int32_t fill_inset; /* units from the edge of a filled area to the middles of its lines */
     iso_shell_options shell;
+    int32_t coarse; /* units by which the outlines that shells look at are thinned */
     iso_fill_options top, solid, bridge, lid;
     int32_t bridge_angle_given;    /* else each bridge has its own */
     int32_t lid_least;             /* units; see iso_shell_find_lids; 0: no lids */
