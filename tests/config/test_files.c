@@ -111,6 +111,14 @@ static void test_quoted_texts_of_filaments_are_unquoted(void) {
     CHECK(strcmp(options.start_gcode, "\"G28\"") == 0);
 }
 
+static void test_empty_numbers_and_comments_behind_numbers(void) {
+    CHECK_OK(read_ini("deretract_speed = 25 # as it is\nretract_speed =\nbed_shape =\n"));
+    CHECK_NEAR(25, options.deretract_speed, 0);
+    CHECK_NEAR(40, options.retract_speed, 0);
+    CHECK_EQUAL(4, options.bed_shape.count);
+    CHECK(strcmp(notes.unused, "retract_speed = , bed_shape = ") == 0);
+}
+
 static void test_the_filament_has_its_say_over_retraction(void) {
     CHECK_OK(read_ini("filament_retract_length = 1.5,2\nretract_length = 3\nretract_lift = 0.4\n"
                       "filament_retract_lift = nil\nfilament_wipe = 1\n"));
@@ -328,6 +336,7 @@ int main(void) {
     RUN(test_unknown_keys_are_kept_for_macros);
     RUN(test_foreign_values_are_bounded);
     RUN(test_quoted_texts_of_filaments_are_unquoted);
+    RUN(test_empty_numbers_and_comments_behind_numbers);
     RUN(test_the_filament_has_its_say_over_retraction);
     RUN(test_presets_names_are_kept);
     RUN(test_a_word_that_is_replaced_later_is_not_noted);

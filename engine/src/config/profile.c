@@ -67,12 +67,12 @@ static void note_foreign(const reader *from, const char *key, const char *value)
         iso_notes_add_unused(from->notes, key, "(no room for more)");
 }
 
-/* The first of a list, one value per extruder: "a";"b" of texts, 1,2 of numbers. What is no list
- * remains as it is. */
+/* The first of a list, one value per extruder: "a";"b" of texts, 1,2 of numbers; numbers may have a
+ * comment behind them: 0 # off. What is no list remains as it is. */
 static const char *first_value(char *first, size_t size, int32_t option, const char *value) {
     const iso_option_info *info = iso_option_at(option);
     const char *begin = value;
-    size_t length = strcspn(value, ",");
+    size_t length = strcspn(value, ",#");
     if (info->kind == ISO_VALUE_TEXT) {
         if (*value != '"' || !iso_macro_is_text_list(info->key))
             return value;
@@ -102,7 +102,9 @@ static iso_status apply_line(reader *from, const iso_ini_line *line) {
         note_foreign(from, line->key, line->value);
         return ISO_OK;
     }
-    if (iso_option_word(option, 0) && !has_word(option, line->value)) {
+    bool is_empty = *line->value == 0 && (is_numeric(iso_option_at(option)->kind) ||
+                                          iso_option_at(option)->kind == ISO_VALUE_POINTS);
+    if (is_empty || (iso_option_word(option, 0) && !has_word(option, line->value))) {
         iso_notes_add_unused(from->notes, line->key, line->value);
         return ISO_OK;
     }
