@@ -5,6 +5,8 @@
 #include "planar/island.h"
 #include "planar/region.h"
 #include "planar/section.h"
+#include "wall/compensation.h"
+#include "wall/fuzzy.h"
 
 double iso_stage_clock(void) {
     struct timespec t;
@@ -24,6 +26,7 @@ void hand_free(iso_hand *hand) {
     iso_region_free(&hand->island);
     iso_region_free(&hand->inside);
     iso_region_free(&hand->part);
+    iso_paths_free(&hand->paths);
 }
 
 iso_status layer_new(iso_layer *layer, int32_t levels) {
@@ -64,6 +67,9 @@ static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_slices
         iso_region_simplify(&layer->region, &hand->raw, layer->settings.thinning, hand->planar));
     layer->square_mm = (double)iso_region_double_area(&layer->region) / 2 /
                        ((double)ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
+    if (compensates(&layer->settings.compensation))
+        ISO_TRY(compensate(&layer->region, (iso_region *[2]){&hand->island, &hand->inside},
+                           &layer->settings.compensation, hand->planar));
     ISO_TRY(check(&layer->region, hand));
     return iso_region_simplify(&layer->run[0], &layer->region, layer->settings.coarse,
                                hand->planar);
@@ -106,7 +112,7 @@ static iso_status add_area(iso_layer *layer, const iso_region *inside, int32_t g
     return ISO_OK;
 }
 
-static iso_status make_walls(iso_layer *layer, iso_hand *hand) {
+static iso_status make_walls(iso_layer *layer, iso_hand *hand, int32_t index) {
     iso_islands islands;
     ISO_TRY(islands_of(&islands, &layer->region, &hand->arena));
     for (int32_t i = 0; i < islands.count; i++) {
@@ -117,22 +123,22 @@ static iso_status make_walls(iso_layer *layer, iso_hand *hand) {
         bool nested = layer->region.parent[islands.contour[islands.first[i]]] >= 0;
         ISO_TRY(add_area(layer, &hand->inside, i, nested));
     }
+    if (layer->settings.fuzzy.on)
+        ISO_TRY(
+            fuzzy_skin(&layer->paths, &hand->paths, 0, &layer->settings.fuzzy, (uint64_t)index));
     return check(&layer->area, hand);
 }
 
 iso_status layer_outline(iso_layer *layer, iso_hand *hand, const iso_slices *slices,
                          int32_t model_count, int32_t index) {
-    const iso_layer_settings *settings = &layer->settings;
     double begun = iso_stage_clock();
     memset(layer->seconds, 0, sizeof layer->seconds);
     iso_paths_clear(&layer->paths);
     iso_region_clear(&layer->area);
     ISO_TRY(make_region(layer, hand, slices, model_count, index));
     double outlined = iso_stage_clock();
-    ISO_TRY(iso_skirt(&layer->paths, &layer->region, settings->skirt_loops,
-                      settings->skirt_distance, &settings->skirt, hand->planar));
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
-    iso_status status = make_walls(layer, hand);
+    iso_status status = make_walls(layer, hand, index);
     iso_arena_pop(&hand->arena, mark);
     layer->seconds[ISO_STAGE_REGIONS] = outlined - begun;
     layer->seconds[ISO_STAGE_WALLS] = iso_stage_clock() - outlined;
@@ -202,8 +208,8 @@ static iso_status fill_bridges(const iso_filling *f) {
         iso_fill_options fill = s->bridge;
         ISO_TRY(island_copy(&hand->part, bridges, &parts, i));
         if (!s->bridge_angle_given && f->beneath)
-            ISO_TRY(iso_bridge_angle(&fill.angle, &hand->part, f->beneath, fill.angle,
-                                     hand->planar));
+            ISO_TRY(
+                iso_bridge_angle(&fill.angle, &hand->part, f->beneath, fill.angle, hand->planar));
         ISO_TRY(fill_part(f, &hand->part, &fill, group_of(f, bridges, &parts, i)));
     }
     return ISO_OK;

@@ -46,6 +46,7 @@ typedef struct iso_hand {
     iso_planar_scratch *planar;
     iso_arena arena;
     iso_region raw, island, inside, part;
+    iso_paths paths;
 } iso_hand;
 
 iso_status hand_new(iso_hand *hand) ISO_MUST_CHECK;

@@ -1,4 +1,4 @@
-#include <isoslice/wall.h>
+#include <isoslice/skirt.h>
 
 #include <math.h>
 
@@ -65,12 +65,14 @@ static void test_loops(void) {
     iso_bead bead = iso_bead_of(6000, 3000);
     int32_t distance = 5 * MM;
     make_boxes(&region);
-    CHECK_OK(iso_skirt(&paths, &region, 3, distance, &bead, scratch));
+    CHECK_OK(iso_skirt(&paths, &region,
+                       &(iso_skirt_options){.loops = 3, .distance = distance, .bead = bead},
+                       scratch));
     CHECK_EQUAL(3, paths.count);
     for (int32_t i = 0; i < paths.count; i++) {
         const iso_path *path = &paths.path[i];
-        double away = distance + (2 - i) * (double)bead.spacing, length = 0, turned = 0;
-        CHECK_EQUAL(i, path->rank);
+        double away = distance + i * (double)bead.spacing, length = 0, turned = 0;
+        CHECK_EQUAL(2 - i, path->rank);
         CHECK_EQUAL(ISO_ROLE_SKIRT, path->role);
         CHECK(path->closed);
         for (int32_t k = 0; k < path->count; k++) {
@@ -92,10 +94,12 @@ static void test_none(void) {
     iso_region region = {0};
     iso_paths paths = {0};
     iso_bead bead = iso_bead_of(6000, 3000);
-    CHECK_OK(iso_skirt(&paths, &region, 3, 100, &bead, scratch));
+    CHECK_OK(iso_skirt(&paths, &region,
+                       &(iso_skirt_options){.loops = 3, .distance = 100, .bead = bead}, scratch));
     CHECK_EQUAL(0, paths.count);
     make_boxes(&region);
-    CHECK_OK(iso_skirt(&paths, &region, 0, 100, &bead, scratch));
+    CHECK_OK(
+        iso_skirt(&paths, &region, &(iso_skirt_options){.distance = 100, .bead = bead}, scratch));
     CHECK_EQUAL(0, paths.count);
     iso_region_free(&region);
     iso_paths_free(&paths);
@@ -112,7 +116,8 @@ static void test_no_memory(void) {
         iso_planar_scratch *own;
         CHECK_OK(iso_planar_scratch_new(&own));
         iso_fail_allocation_after(n);
-        status = iso_skirt(&paths, &region, 2, 3 * MM, &bead, own);
+        status = iso_skirt(&paths, &region,
+                           &(iso_skirt_options){.loops = 2, .distance = 3 * MM, .bead = bead}, own);
         iso_fail_allocation_after(-1);
         if (status != ISO_OK)
             CHECK(paths.count == 0 && paths.vertex_count == 0);

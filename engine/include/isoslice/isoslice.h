@@ -15,6 +15,7 @@
 #include <isoslice/preview.h>
 #include <isoslice/report.h>
 #include <isoslice/shell.h>
+#include <isoslice/skirt.h>
 #include <isoslice/slice.h>
 #include <isoslice/status.h>
 #include <isoslice/version.h>

@@ -76,6 +76,10 @@ ISO_API void iso_paths_clear(iso_paths *paths);
 ISO_API iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point *point,
                                  int32_t count, int32_t width, int32_t area) ISO_MUST_CHECK;
 
+/* Append copies of all of `more`, moved by `by`, as parts of `object`. */
+ISO_API iso_status iso_paths_append(iso_paths *paths, const iso_paths *more, iso_point by,
+                                    int32_t object) ISO_MUST_CHECK;
+
 /* A bead is a stadium: a rectangle with half-round sides (docs/flow.md).
  * area = (w - h) h + pi (h/2)^2; neighbours at spacing = area / h fill the layer exactly. */
 typedef struct iso_bead {

@@ -28,11 +28,4 @@ ISO_API iso_status iso_walls(iso_paths *paths, iso_region *inside, const iso_reg
                              const iso_wall_options *options,
                              iso_planar_scratch *scratch) ISO_MUST_CHECK;
 
-/* `loops` loops around everything on the first layer: the convex hull of `region`, grown by
- * `distance` units to the middle of the innermost, then by the bead's spacing each. Printed from
- * the outermost in. */
-ISO_API iso_status iso_skirt(iso_paths *paths, const iso_region *region, int32_t loops,
-                             int32_t distance, const iso_bead *bead,
-                             iso_planar_scratch *scratch) ISO_MUST_CHECK;
-
 #endif

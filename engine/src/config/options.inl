@@ -152,7 +152,7 @@ ISO_OPTION(
 ISO_OPTION(fuzzy_skin, FUZZY, "none", "", 0, 0, "Walls",
            "Walls that are drawn with a random jitter, for a rough skin.")
 ISO_OPTION(fuzzy_skin_thickness, NUMBER, "0.3", "mm", 0, 10, "Walls",
-           "Width of the band that the jitter stays in.")
+           "How far the jitter moves a point to either side.")
 ISO_OPTION(fuzzy_skin_point_dist, NUMBER, "0.8", "mm", 0.05, 10, "Walls",
            "Mean distance between the points of the jitter.")
 ISO_OPTION(

@@ -42,6 +42,19 @@ static void set_walls(iso_layer_settings *s, const iso_options *options, bool fi
     };
 }
 
+/* What is done to the outlines before the walls, and to the skin after. */
+static void set_outline(iso_layer_settings *s, const iso_options *options, bool first) {
+    s->compensation =
+        (iso_compensation){.all = iso_units(options->xy_size_compensation),
+                           .holes = iso_units(options->xy_hole_compensation),
+                           .foot = first ? iso_units(options->elefant_foot_compensation) : 0,
+                           .narrowest = s->wall.external.width};
+    s->fuzzy = (iso_fuzzy_options){.on = options->fuzzy_skin != ISO_FUZZY_NONE && !first,
+                                   .holes = options->fuzzy_skin == ISO_FUZZY_ALL,
+                                   .thickness = iso_units(options->fuzzy_skin_thickness),
+                                   .distance = iso_units(options->fuzzy_skin_point_dist)};
+}
+
 static iso_fill_options fill_of(const iso_options *options, iso_role role, bool first,
                                 double height, double density) {
     iso_fill_options fill = iso_fill_defaults(bead_of(options, role, first, height), density);
@@ -174,12 +187,10 @@ void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_
                        double height) {
     bool first = index == 0;
     set_walls(s, options, first, height);
+    set_outline(s, options, first);
     set_fill(s, options, index, first, height);
     set_shell(s, options, index, first, height);
     set_bridges(s, options, first, height);
-    s->skirt = bead_of(options, ISO_ROLE_SKIRT, first, height);
-    s->skirt_loops = first ? options->skirts : 0;
-    s->skirt_distance = iso_units(options->skirt_distance) + s->skirt.width / 2;
 }
 
 /* s to move the filament by `length`, from standing to standing. */

@@ -10,11 +10,15 @@
 #include "config/texts.h"
 
 #include "path/order.h"
+#include "wall/compensation.h"
+#include "wall/fuzzy.h"
 
 /* What a layer's paths are made with. */
 typedef struct iso_layer_settings {
     int32_t thinning; /* units by which outlines may be thinned */
+    iso_compensation compensation;
     iso_wall_options wall;
+    iso_fuzzy_options fuzzy;
     int32_t fill_inset; /* units from the edge of a filled area to the middles of its lines */
     iso_shell_options shell;
     int32_t coarse; /* units by which the outlines that shells look at are thinned */
@@ -24,9 +28,6 @@ typedef struct iso_layer_settings {
     iso_overhang_options overhang; /* reach 0: none */
     int32_t has_sparse;            /* else the area within the shells stays empty */
     iso_fill_options sparse;       /* .z is not set */
-    int32_t skirt_loops;           /* first layer only */
-    int32_t skirt_distance;        /* units, to the middle of the innermost loop */
-    iso_bead skirt;
 } iso_layer_settings;
 
 /* `index` counts from 0; `height` in mm. */

@@ -67,29 +67,6 @@ static int32_t widen_hull(iso_vec2 *wide, const iso_vec2 *hull, int32_t count, d
     return n;
 }
 
-/* Points of the lowest level; *count tells how many. */
-static iso_status gather(iso_vec2 **point, int32_t *count, const iso_slices *slices,
-                         int32_t slices_count) {
-    int64_t total = 0;
-    for (int32_t s = 0; s < slices_count; s++)
-        if (slices[s].level_count > 0)
-            total += slices[s].contour_first[slices[s].level_first[1]];
-    if (total > INT32_MAX / 4)
-        return iso_no_memory(SIZE_MAX);
-    ISO_TRY(ISO_ALLOCATE(*point, total));
-    *count = (int32_t)total;
-    total = 0;
-    for (int32_t s = 0; s < slices_count; s++) {
-        if (slices[s].level_count == 0)
-            continue;
-        int64_t n = slices[s].contour_first[slices[s].level_first[1]];
-        if (n > 0)
-            memcpy(*point + total, slices[s].point, (size_t)n * sizeof **point);
-        total += n;
-    }
-    return ISO_OK;
-}
-
 static iso_status set_hull(iso_texts *texts, iso_vec2 *point, int32_t count) {
     iso_macro_job *job = &texts->job;
     double by = widening(texts->options);
@@ -115,11 +92,15 @@ static iso_status set_hull(iso_texts *texts, iso_vec2 *point, int32_t count) {
     return status;
 }
 
-iso_status texts_place(iso_texts *texts, const iso_slices *slices, int32_t count) {
-    iso_vec2 *point = NULL;
-    int32_t points = 0;
-    ISO_TRY(gather(&point, &points, slices, count));
-    iso_status status = points > 0 ? set_hull(texts, point, points) : ISO_OK;
+iso_status texts_place(iso_texts *texts, const iso_region *first) {
+    int32_t count = first->count ? first->first[first->count] : 0;
+    iso_vec2 *point;
+    if (count == 0)
+        return ISO_OK;
+    ISO_TRY(ISO_ALLOCATE(point, count));
+    for (int32_t i = 0; i < count; i++)
+        point[i] = (iso_vec2){iso_mm(first->point[i].x), iso_mm(first->point[i].y)};
+    iso_status status = set_hull(texts, point, count);
     iso_release(point);
     return status;
 }

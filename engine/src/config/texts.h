@@ -3,7 +3,7 @@
 #define ISO_CONFIG_TEXTS_H
 
 #include <isoslice/gcode.h>
-#include <isoslice/slice.h>
+#include <isoslice/planar.h>
 
 #include "macro/macro.h"
 
@@ -21,9 +21,9 @@ typedef struct iso_texts {
 void texts_begin(iso_texts *texts, const iso_options *options, const iso_macro_job *job);
 void texts_free(iso_texts *texts);
 
-/* Where the first layer comes to lie: the lowest level of the slices, widened by skirt and brim.
- * The hull belongs to the texts. */
-iso_status texts_place(iso_texts *texts, const iso_slices *slices, int32_t count) ISO_MUST_CHECK;
+/* Where the first layer comes to lie: these contours, widened by skirt and brim. The hull belongs
+ * to the texts. */
+iso_status texts_place(iso_texts *texts, const iso_region *first) ISO_MUST_CHECK;
 
 /* See that all texts are right before anything is written: expanded as at the first layer (the end:
  * at the last one, whose top is at `top` mm), or by their form alone if one of them sets a global

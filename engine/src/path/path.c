@@ -34,11 +34,15 @@ void iso_paths_clear(iso_paths *paths) {
     paths->count = paths->vertex_count = paths->travel_count = 0;
 }
 
+static iso_status too_many(void) {
+    return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
+}
+
 iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point *point,
                          int32_t count, int32_t width, int32_t area) {
     int64_t vertices = (int64_t)paths->vertex_count + count;
     if (count < 0 || vertices > INT32_MAX || paths->count == INT32_MAX)
-        return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
+        return too_many();
     ISO_TRY(ISO_GROW(paths->path, paths->path_capacity, (int64_t)paths->count + 1));
     ISO_TRY(ISO_GROW(paths->vertex, paths->vertex_capacity, vertices));
     iso_path *path = &paths->path[paths->count++];
@@ -50,6 +54,39 @@ iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point
         vertex[i] =
             (iso_path_vertex){.at = point[i], .width = width, .area = area, .role = like->role};
     paths->vertex_count = (int32_t)vertices;
+    return ISO_OK;
+}
+
+static iso_point moved(iso_point p, iso_point by) {
+    return (iso_point){p.x + by.x, p.y + by.y};
+}
+
+iso_status iso_paths_append(iso_paths *paths, const iso_paths *more, iso_point by, int32_t object) {
+    int64_t count = (int64_t)paths->count + more->count;
+    int64_t vertices = (int64_t)paths->vertex_count + more->vertex_count;
+    int64_t travels = (int64_t)paths->travel_count + more->travel_count;
+    if (vertices > INT32_MAX || count > INT32_MAX || travels > INT32_MAX)
+        return too_many();
+    ISO_TRY(ISO_GROW(paths->travel, paths->travel_capacity, travels));
+    ISO_TRY(ISO_GROW(paths->path, paths->path_capacity, count));
+    ISO_TRY(ISO_GROW(paths->vertex, paths->vertex_capacity, vertices));
+    for (int32_t i = 0; i < more->count; i++) {
+        iso_path *path = &paths->path[paths->count + i];
+        *path = more->path[i];
+        path->first += paths->vertex_count;
+        path->travel_first += paths->travel_count;
+        path->object = object;
+    }
+    for (int32_t i = 0; i < more->vertex_count; i++) {
+        iso_path_vertex *vertex = &paths->vertex[paths->vertex_count + i];
+        *vertex = more->vertex[i];
+        vertex->at = moved(vertex->at, by);
+    }
+    for (int32_t i = 0; i < more->travel_count; i++)
+        paths->travel[paths->travel_count + i] = moved(more->travel[i], by);
+    paths->count = (int32_t)count;
+    paths->vertex_count = (int32_t)vertices;
+    paths->travel_count = (int32_t)travels;
     return ISO_OK;
 }
 

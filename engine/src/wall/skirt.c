@@ -1,4 +1,6 @@
-#include <isoslice/wall.h>
+#include <isoslice/skirt.h>
+
+#include <math.h>
 
 #include "base/memory.h"
 #include "base/sort.h"
@@ -39,32 +41,52 @@ static iso_status hull_of(iso_region *out, const iso_region *region) {
     return status;
 }
 
-static iso_status draw_skirt(iso_paths *paths, const iso_region *hull, int32_t loops,
-                             iso_offset_options *offset, const iso_bead *bead, iso_region *loop,
-                             iso_planar_scratch *scratch) {
+static double length_of(const iso_region *loop) {
+    double sum = 0;
+    for (int32_t c = 0; c < loop->count; c++)
+        for (int32_t i = loop->first[c], last = loop->first[c + 1] - 1, j = last; i <= last;
+             j = i++) {
+            double dx = (double)loop->point[i].x - loop->point[j].x;
+            double dy = (double)loop->point[i].y - loop->point[j].y;
+            sum += sqrt(dx * dx + dy * dy);
+        }
+    return sum;
+}
+
+enum { LOOPS_MAX = 1000 };
+
+/* From the innermost out; their number is known only then, and with it the ranks. */
+static iso_status draw_skirt(iso_paths *paths, const iso_region *hull, iso_region *loop,
+                             const iso_skirt_options *options, iso_planar_scratch *scratch) {
     iso_path like = {.role = ISO_ROLE_SKIRT, .closed = 1, .object = -1, .group = -1};
-    for (int32_t i = loops; i-- > 0; like.rank++) {
-        iso_offset_options grown = *offset;
-        grown.distance += i * bead->spacing;
+    int32_t before = paths->count;
+    double length = 0;
+    for (int32_t i = 0; i < options->loops || (length < options->min_length && i < LOOPS_MAX);
+         i++) {
+        iso_offset_options grown =
+            iso_offset_defaults(options->distance + i * options->bead.spacing);
+        grown.join = ISO_JOIN_ROUND;
         ISO_TRY(iso_offset(loop, hull, &grown, scratch));
+        length += length_of(loop);
         for (int32_t c = 0; c < loop->count; c++)
             ISO_TRY(iso_paths_add(paths, &like, loop->point + loop->first[c],
-                                  loop->first[c + 1] - loop->first[c], bead->width, bead->area));
+                                  loop->first[c + 1] - loop->first[c], options->bead.width,
+                                  options->bead.area));
     }
+    for (int32_t i = before; i < paths->count; i++)
+        paths->path[i].rank = paths->count - 1 - i;
     return ISO_OK;
 }
 
-iso_status iso_skirt(iso_paths *paths, const iso_region *region, int32_t loops, int32_t distance,
-                     const iso_bead *bead, iso_planar_scratch *scratch) {
-    if (loops <= 0 || region->count == 0)
+iso_status iso_skirt(iso_paths *paths, const iso_region *region, const iso_skirt_options *options,
+                     iso_planar_scratch *scratch) {
+    if ((options->loops <= 0 && options->min_length <= 0) || region->count == 0)
         return ISO_OK;
-    iso_offset_options offset = iso_offset_defaults(distance);
-    offset.join = ISO_JOIN_ROUND;
     iso_region hull = {0}, loop = {0};
     int32_t count = paths->count, vertices = paths->vertex_count;
     iso_status status = hull_of(&hull, region);
     if (status == ISO_OK)
-        status = draw_skirt(paths, &hull, loops, &offset, bead, &loop, scratch);
+        status = draw_skirt(paths, &hull, &loop, options, scratch);
     if (status != ISO_OK) {
         paths->count = count;
         paths->vertex_count = vertices;

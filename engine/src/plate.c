@@ -1,0 +1,134 @@
+#include "plate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "config/settings_objects.h"
+
+bool plate_on_bed(const iso_points *bed, double x, double y) {
+    bool inside = false;
+    for (int32_t i = 0; i < bed->count; i++) {
+        iso_vec2 a = bed->point[i], b = bed->point[i + 1 == bed->count ? 0 : i + 1];
+        double side = (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+        bool within = fmin(a.x, b.x) <= x && x <= fmax(a.x, b.x) && fmin(a.y, b.y) <= y &&
+                      y <= fmax(a.y, b.y);
+        if (side == 0 && within)
+            return true;
+        if ((a.y <= y) != (b.y <= y) && (side > 0) == (b.y > a.y))
+            inside = !inside;
+    }
+    return inside;
+}
+
+static iso_status read_models(iso_mesh *mesh, iso_report *report, const char *const *input,
+                              int32_t count) {
+    for (int32_t i = 0; i < count; i++) {
+        ISO_TRY(iso_mesh_read(&mesh[i], input[i]));
+        ISO_TRY(iso_report_add_input(report, input[i], &mesh[i]));
+    }
+    return ISO_OK;
+}
+
+static const char *name_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static iso_status make_objects(iso_plate *plate, iso_report *report, const iso_options *options,
+                               const char *const *input, int32_t count) {
+    iso_object_options object = settings_of_objects(options);
+    iso_mesh *mesh;
+    const char **name;
+    ISO_TRY(ISO_ALLOCATE(mesh, count));
+    memset(mesh, 0, (size_t)count * sizeof *mesh);
+    iso_status status = ISO_ALLOCATE(name, count);
+    if (status == ISO_OK) {
+        for (int32_t i = 0; i < count; i++)
+            name[i] = name_of(input[i]);
+        status = read_models(mesh, report, input, count);
+        if (status == ISO_OK)
+            status = iso_objects_make(&plate->objects, mesh, name, count, &object);
+        iso_release(name);
+    }
+    for (int32_t i = 0; i < count; i++)
+        iso_mesh_free(&mesh[i]);
+    iso_release(mesh);
+    return status;
+}
+
+static bool box_on_bed(const iso_points *bed, const iso_object *object, iso_vec2 by) {
+    double x[2] = {object->min.x + by.x, object->max.x + by.x};
+    double y[2] = {object->min.y + by.y, object->max.y + by.y};
+    bool on = true;
+    for (int i = 0; i < 4; i++)
+        on = on && plate_on_bed(bed, x[i & 1], y[i >> 1]);
+    return on;
+}
+
+/* Placing rounds to a unit; half of that may stick out. */
+static bool nearly_on_bed(const iso_points *bed, double x, double y) {
+    static const double slack = 1e-4;
+    return plate_on_bed(bed, x, y) || plate_on_bed(bed, x - slack, y - slack) ||
+           plate_on_bed(bed, x + slack, y - slack) || plate_on_bed(bed, x - slack, y + slack) ||
+           plate_on_bed(bed, x + slack, y + slack);
+}
+
+static iso_status check_instance(const iso_points *bed, const iso_object *object, iso_vec2 by) {
+    if (box_on_bed(bed, object, by))
+        return ISO_OK;
+    for (int32_t m = 0; m < object->mesh_count; m++)
+        for (int32_t v = 0; v < object->mesh[m].vertex_count; v++) {
+            iso_vec3 p = object->mesh[m].position[v];
+            if (!nearly_on_bed(bed, p.x + by.x, p.y + by.y))
+                return iso_fail(ISO_OUTSIDE,
+                                "%s, %.2f x %.2f mm, reaches beyond the bed at (%.2f, %.2f); see "
+                                "bed_shape, center and arrange",
+                                object->name, object->max.x - object->min.x,
+                                object->max.y - object->min.y, p.x + by.x, p.y + by.y);
+        }
+    return ISO_OK;
+}
+
+static iso_status check_volume(const iso_plate *plate, const iso_options *options) {
+    for (int32_t i = 0; i < plate->objects.count; i++) {
+        const iso_object *object = &plate->objects.object[i];
+        if (object->max.z > options->max_print_height)
+            return iso_fail(ISO_OUTSIDE, "%s is %.2f mm high, max_print_height is %.2f mm",
+                            object->name, object->max.z, options->max_print_height);
+    }
+    for (int32_t i = 0; i < plate->instances.count; i++) {
+        const iso_instance *instance = &plate->instances.instance[i];
+        iso_vec2 by = {iso_mm(instance->by.x), iso_mm(instance->by.y)};
+        ISO_TRY(check_instance(&options->bed_shape, &plate->objects.object[instance->object], by));
+    }
+    return ISO_OK;
+}
+
+static iso_status place(iso_plate *plate, const iso_options *options) {
+    iso_planar_scratch *scratch;
+    iso_placing placing = settings_of_placing(options);
+    ISO_TRY(iso_planar_scratch_new(&scratch));
+    iso_status status = iso_objects_place(&plate->instances, &plate->objects, &placing, scratch);
+    iso_planar_scratch_free(scratch);
+    return status;
+}
+
+iso_status plate_load(iso_plate *plate, iso_report *report, const iso_options *options,
+                      const char *const *input, int32_t input_count) {
+    ISO_TRY(make_objects(plate, report, options, input, input_count));
+    ISO_TRY(place(plate, options));
+    ISO_TRY(check_volume(plate, options));
+    if (options->skirts > 0 &&
+        (options->skirt_height > 1 || options->draft_shield == ISO_SHIELD_ENABLED))
+        ISO_TRY(iso_objects_find_hulls(&plate->objects));
+    if (!options->complete_objects)
+        return ISO_OK;
+    iso_clearance clearance = settings_of_clearance(options);
+    return iso_objects_sequence(&plate->instances, &plate->objects, &clearance);
+}
+
+void plate_free(iso_plate *plate) {
+    iso_instances_free(&plate->instances);
+    iso_objects_free(&plate->objects);
+}

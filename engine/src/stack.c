@@ -1,0 +1,197 @@
+#include "stack.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "config/settings_objects.h"
+#include "planar/section.h"
+
+enum { LAYERS_PER_THREAD = 8 };
+
+/* ---- the crew ---- */
+
+iso_status crew_new(iso_crew *crew, int32_t threads) {
+    ISO_TRY(iso_pool_new(&crew->pool, threads));
+    crew->count = iso_pool_threads(crew->pool);
+    ISO_TRY(ISO_ALLOCATE(crew->hand, crew->count));
+    memset(crew->hand, 0, (size_t)crew->count * sizeof *crew->hand);
+    for (int32_t i = 0; i < crew->count; i++)
+        ISO_TRY(hand_new(&crew->hand[i]));
+    return ISO_OK;
+}
+
+void crew_free(iso_crew *crew) {
+    for (int32_t i = 0; crew->hand && i < crew->count; i++)
+        hand_free(&crew->hand[i]);
+    iso_release(crew->hand);
+    iso_pool_free(crew->pool);
+}
+
+/* ---- slices ---- */
+
+static double projected_area(const iso_mesh *mesh) {
+    double sum = 0;
+    for (int32_t t = 0; t < mesh->triangle_count; t++) {
+        const int32_t *v = mesh->origin + 3 * (int64_t)t;
+        iso_vec3 a = mesh->position[v[0]], b = mesh->position[v[1]], c = mesh->position[v[2]];
+        sum += fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+    return sum / 2;
+}
+
+static int64_t slices_bytes(const iso_slices *slices) {
+    return slices->crossing_count * (int64_t)sizeof *slices->point +
+           slices->contour_count * (int64_t)sizeof *slices->contour_first +
+           slices->level_count * (int64_t)sizeof *slices->level_first;
+}
+
+static iso_status make_levels(iso_stack *stack, const iso_object *object) {
+    const iso_options *options = stack->options;
+    double heights[ISO_NUMBERS_MAX + 1];
+    if (options->adaptive_layers) {
+        iso_adaptive_options adaptive = settings_of_adaptive(options);
+        ISO_TRY(iso_levels_adaptive(&stack->levels, object->mesh, object->mesh_count, &adaptive));
+    } else {
+        int32_t count = iso_options_heights(heights, options);
+        ISO_TRY(iso_levels_from_heights(&stack->levels, heights, count, object->max.z));
+    }
+    if (stack->levels.count > 0)
+        return ISO_OK;
+    return iso_fail(ISO_OUTSIDE, "%s is %.4f mm high: too low for a first layer of %.3f mm",
+                    object->name, object->max.z, iso_options_first_height(options));
+}
+
+static iso_status slice_meshes(iso_stack *stack, iso_object *object) {
+    double height = stack->levels.top[stack->levels.count - 1];
+    ISO_TRY(ISO_ALLOCATE(stack->slices, object->mesh_count));
+    memset(stack->slices, 0, (size_t)object->mesh_count * sizeof *stack->slices);
+    stack->model_count = object->mesh_count;
+    for (int32_t i = 0; i < object->mesh_count; i++) {
+        iso_mesh *mesh = &object->mesh[i];
+        ISO_TRY(iso_slice_planar(&stack->slices[i], mesh, &stack->levels));
+        stack->mesh_volume += iso_mesh_volume_between(mesh, 0, height);
+        stack->projected += projected_area(mesh);
+        stack->slice_bytes += slices_bytes(&stack->slices[i]);
+        iso_mesh_free(mesh);
+    }
+    return ISO_OK;
+}
+
+/* Slices at the middles of layers miss the volume by less than half a layer under all surface seen
+ * from above, and usually by far less. More than that is a wrong slice. */
+static iso_status verify_volume(iso_stack *stack, const iso_object *object) {
+    const iso_levels *levels = &stack->levels;
+    double thickest = 0;
+    for (int32_t i = 0; i < levels->count; i++) {
+        double area = 0;
+        for (int32_t m = 0; m < stack->model_count; m++)
+            area += section_area(&stack->slices[m], i);
+        stack->sliced_volume += area * levels->height[i];
+        thickest = fmax(thickest, levels->height[i]);
+    }
+    double allowed = 1e-6 * stack->mesh_volume + stack->projected * thickest / 2;
+    if (fabs(stack->sliced_volume - stack->mesh_volume) <= allowed)
+        return ISO_OK;
+    return iso_fail(ISO_NOT_VERIFIED,
+                    "%s: the slices hold %.3f mm^3, the model %.3f mm^3: nothing was written",
+                    object->name, stack->sliced_volume, stack->mesh_volume);
+}
+
+iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *options,
+                       const iso_crew *crew) {
+    iso_shell_depth shells = settings_of_shells(options);
+    stack->options = options;
+    stack->crew = crew;
+    stack->block = LAYERS_PER_THREAD * crew->count;
+    ISO_TRY(make_levels(stack, object));
+    ISO_TRY(slice_meshes(stack, object));
+    ISO_TRY(verify_volume(stack, object));
+    return window_new(&stack->window, &stack->levels, &shells, stack->block, 0);
+}
+
+void stack_free(iso_stack *stack) {
+    for (int32_t i = 0; stack->slices && i < stack->model_count; i++)
+        iso_slices_free(&stack->slices[i]);
+    iso_release(stack->slices);
+    window_free(&stack->window);
+    iso_levels_free(&stack->levels);
+}
+
+/* ---- layers ---- */
+
+static iso_status outline_task(void *payload, int64_t number, int worker) {
+    iso_stack *stack = payload;
+    int32_t index = stack->begin + (int32_t)number;
+    iso_layer *layer = window_layer(&stack->window, index);
+    settings_of_layer(&layer->settings, stack->options, index, stack->levels.height[index]);
+    return layer_outline(layer, &stack->crew->hand[worker], stack->slices, stack->model_count,
+                         index);
+}
+
+static iso_status widen_task(void *payload, int64_t number, int worker) {
+    iso_stack *stack = payload;
+    return window_widen(&stack->window, stack->begin + (int32_t)number, stack->level,
+                        stack->crew->hand[worker].planar);
+}
+
+static iso_status split_task(void *payload, int64_t number, int worker) {
+    iso_stack *stack = payload;
+    int32_t index = stack->begin + (int32_t)number;
+    iso_shell_neighbours around = window_around(&stack->window, index);
+    return layer_split(window_layer(&stack->window, index), &stack->crew->hand[worker], &around);
+}
+
+static iso_status fill_task(void *payload, int64_t number, int worker) {
+    iso_stack *stack = payload;
+    int32_t index = stack->begin + (int32_t)number;
+    const iso_layer *beneath = index > 0 ? window_layer(&stack->window, index - 1) : NULL;
+    return layer_fill(window_layer(&stack->window, index), &stack->crew->hand[worker], beneath);
+}
+
+static int32_t least(int32_t a, int32_t b) {
+    return a < b ? a : b;
+}
+
+/* Outlines up to `end`, and the runs that lie wholly below it. */
+static iso_status outline_up_to(iso_stack *stack, int32_t end) {
+    iso_window *window = &stack->window;
+    for (stack->level = 0; stack->level < window->levels; stack->level++) {
+        int32_t wide = window_wide_end(stack->level, end);
+        stack->begin = window->made[stack->level];
+        if (wide <= stack->begin)
+            break;
+        ISO_TRY(iso_parallel_for(stack->crew->pool, wide - stack->begin,
+                                 stack->level == 0 ? outline_task : widen_task, stack));
+        window->made[stack->level] = wide;
+    }
+    return ISO_OK;
+}
+
+/* Layers up to `end` split into their shells. */
+static iso_status split_up_to(iso_stack *stack, int32_t end) {
+    iso_window *window = &stack->window;
+    ISO_TRY(outline_up_to(stack, least(end + window->top, window->count)));
+    stack->begin = window->split;
+    ISO_TRY(iso_parallel_for(stack->crew->pool, end - stack->begin, split_task, stack));
+    window->split = end;
+    return ISO_OK;
+}
+
+/* Outlines run ahead by the height of the top shell, and stay until the bottom shell above them is
+ * done. */
+iso_status stack_layer(iso_layer **layer, iso_stack *stack, int32_t index) {
+    if (index == stack->filled) {
+        int32_t count = stack->levels.count, end = least(stack->filled + stack->block, count);
+        ISO_TRY(split_up_to(stack, end));
+        stack->begin = stack->filled;
+        ISO_TRY(iso_parallel_for(stack->crew->pool, end - stack->filled, fill_task, stack));
+        stack->filled = end;
+    }
+    *layer = window_layer(&stack->window, index);
+    return ISO_OK;
+}
+
+void stack_rewind(iso_stack *stack) {
+    stack->filled = stack->window.split = 0;
+    memset(stack->window.made, 0, sizeof stack->window.made);
+}

@@ -1,0 +1,53 @@
+/* A stack: the layers of one object, from its meshes to the paths of each layer.
+ *
+ * Layers are made in blocks, in parallel, from the bed up; nothing but the slices outlives the
+ * window around them (window.h). */
+#ifndef ISO_STACK_H
+#define ISO_STACK_H
+
+#include <isoslice/object.h>
+
+#include "base/parallel.h"
+#include "window.h"
+
+/* The threads, and what each of them needs for itself. */
+typedef struct iso_crew {
+    iso_pool *pool;
+    int32_t count;
+    iso_hand *hand; /* [count] */
+} iso_crew;
+
+iso_status crew_new(iso_crew *crew, int32_t threads) ISO_MUST_CHECK;
+void crew_free(iso_crew *crew);
+
+/* Zero-initialise. */
+typedef struct iso_stack {
+    const iso_options *options;
+    const iso_crew *crew;
+    int32_t model_count;
+    iso_slices *slices; /* [model_count] */
+    iso_levels levels;
+    double mesh_volume;   /* mm^3 of the meshes up to the top of the last layer */
+    double sliced_volume; /* mm^3 of their slices */
+    double projected;     /* mm^2 of all triangles seen from above */
+    iso_window window;
+    int32_t block;        /* layers filled in one go */
+    int32_t filled;       /* layers that are done, from the bed up */
+    int32_t begin, level; /* of the parallel loop under way: first layer, level of its runs */
+    int64_t mesh_bytes, slice_bytes;
+} iso_stack;
+
+/* Slice the object's meshes and let each go. ISO_OUTSIDE: too low for a layer; ISO_NOT_VERIFIED:
+ * the slices don't hold the meshes' volume. */
+iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *options,
+                       const iso_crew *crew) ISO_MUST_CHECK;
+void stack_free(iso_stack *stack);
+
+/* Layer `index` with its paths, made together with those of its block. Ask for one after the other:
+ * the layers below are no longer there afterwards. */
+iso_status stack_layer(iso_layer **layer, iso_stack *stack, int32_t index) ISO_MUST_CHECK;
+
+/* Start from the bed again, for another copy. */
+void stack_rewind(iso_stack *stack);
+
+#endif
