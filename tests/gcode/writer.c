@@ -1,66 +1,7 @@
-#include "gcode/writer.h"
-
-#include <stdlib.h>
-#include <unistd.h>
-
-#include "base/memory.h"
-#include "check.h"
-#include "reader.h"
+#define SMALL_FILE "test-gcode-writer.gcode"
+#include "small.h"
 
 static const double pi = 3.14159265358979323846;
-static const char *const file_name = "test-gcode-writer.gcode";
-
-/* Plain options: no start or end, no cooling, no progress. */
-static iso_gcode_options plain(void) {
-    iso_gcode_options o = iso_gcode_defaults();
-    o.start_gcode = o.end_gcode = NULL;
-    o.cooling = o.remaining_times = 0;
-    memcpy(o.first_layer_speed, o.speed, sizeof o.speed);
-    o.first_layer_small_perimeter_speed = o.small_perimeter_speed;
-    return o;
-}
-
-static iso_status config_lines(iso_output *output, void *payload) {
-    return iso_output_print(output, "; layer_height = %s\n", (const char *)payload);
-}
-
-static iso_status write_file(iso_gcode_totals *totals, const iso_gcode_options *options,
-                             const iso_paths *layer, int layers) {
-    iso_output *output;
-    iso_gcode_writer *writer = NULL;
-    ISO_TRY(iso_output_open(&output, file_name));
-    iso_status status = iso_gcode_writer_new(&writer, output, options);
-    if (status == ISO_OK)
-        status = iso_gcode_begin(writer);
-    for (int i = 0; i < layers && status == ISO_OK; i++)
-        status =
-            iso_gcode_layer(writer, &(iso_gcode_layer_info){i, 2000 * (i + 1), 2000, &layer[i]});
-    if (status == ISO_OK)
-        status = iso_gcode_finish(totals, writer, config_lines, "0.2");
-    iso_gcode_writer_free(writer);
-    if (status != ISO_OK) {
-        iso_output_abandon(output);
-        return status;
-    }
-    return iso_output_commit(output);
-}
-
-static reading print(iso_gcode_totals *totals, const iso_gcode_options *options,
-                     const iso_paths *layer, int layers) {
-    CHECK_OK(write_file(totals, options, layer, layers));
-    reading r = reading_of(file_name);
-    CHECK_EQUAL(r.size, totals->bytes);
-    unlink(file_name);
-    return r;
-}
-
-static void add_square(iso_paths *paths, int32_t x, int32_t y, int32_t side, iso_role role,
-                       int32_t width) {
-    iso_point p[4] = {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
-    iso_bead bead = iso_bead_of(width, 2000);
-    CHECK_OK(iso_paths_add(paths, &(iso_path){.role = (uint8_t)role, .closed = 1}, p, 4, width,
-                           bead.area));
-}
 
 static double mm3_of(const iso_paths *paths) {
     double sum = 0;
@@ -268,7 +209,7 @@ static void test_multiplier_and_diameter(void) {
     iso_paths_free(&layer);
     o.filament_diameter = 0;
     CHECK_STATUS(ISO_BAD_CONFIG, write_file(&totals, &o, &layer, 0));
-    CHECK(access(file_name, F_OK) != 0);
+    CHECK(access(SMALL_FILE, F_OK) != 0);
 }
 
 static void test_retractions_balance(void) {
@@ -497,16 +438,6 @@ static void test_bad_role_is_refused(void) {
     iso_paths_free(&layer);
 }
 
-static void test_flavours(void) {
-    iso_flavour flavour = ISO_FLAVOUR_COUNT;
-    CHECK_OK(iso_flavour_from_name(&flavour, "marlin2"));
-    CHECK_EQUAL(ISO_FLAVOUR_MARLIN2, flavour);
-    CHECK_OK(iso_flavour_from_name(&flavour, "marlin"));
-    CHECK_EQUAL(ISO_FLAVOUR_MARLIN, flavour);
-    CHECK_STATUS(ISO_BAD_CONFIG, iso_flavour_from_name(&flavour, "cura"));
-    CHECK_EQUAL(ISO_FLAVOUR_MARLIN, flavour);
-}
-
 static void test_without_memory(void) {
     iso_paths layer = {0};
     add_square(&layer, 0, 0, 1000000, ISO_ROLE_PERIMETER, 4500);
@@ -517,8 +448,8 @@ static void test_without_memory(void) {
         iso_fail_allocation_after(n);
         iso_status status = write_file(&totals, &o, &layer, 1);
         iso_fail_allocation_after(-1);
-        CHECK_EQUAL(status == ISO_OK, access(file_name, F_OK) == 0);
-        unlink(file_name);
+        CHECK_EQUAL(status == ISO_OK, access(SMALL_FILE, F_OK) == 0);
+        unlink(SMALL_FILE);
         if (status == ISO_OK) {
             CHECK(n >= 3);
             break;
@@ -544,7 +475,6 @@ int main(void) {
     RUN(test_layer_text_that_moves);
     RUN(test_heights_within_a_layer);
     RUN(test_bad_role_is_refused);
-    RUN(test_flavours);
     RUN(test_without_memory);
     return check_verdict();
 }
