@@ -42,29 +42,24 @@ static void choose_cells(iso_edge_grid *grid) {
     size = size < longest ? longest : size;
     grid->origin = box.min;
     grid->size = (int32_t)size;
+    grid->inverse = 1.0 / (double)size;
     grid->columns = (int32_t)(width / size + 1);
     grid->rows = (int32_t)(height / size + 1);
 }
 
-static int32_t clamp(int64_t cell, int32_t cells) {
-    return cell < 0 ? 0 : cell >= cells ? cells - 1 : (int32_t)cell;
-}
-
-static int32_t cell_of(double offset, int32_t size, int32_t cells) {
-    if (offset <= 0)
-        return 0;
-    double c = offset / size;
-    return c >= cells ? cells - 1 : (int32_t)c;
+static int32_t cell_at(double offset, double inverse, int32_t cells) {
+    double c = offset * inverse;
+    return c <= 0 ? 0 : c >= cells ? cells - 1 : (int32_t)c;
 }
 
 /* The rows that the segment passes; those beyond the grid fall to its border, which only makes a
  * search longer. */
 static void rows_of(int32_t *begin, int32_t *end, const iso_edge_grid *grid, iso_point a,
                     iso_point b) {
-    int64_t low = (a.y < b.y ? a.y : b.y) - (int64_t)grid->origin.y - 1;
-    int64_t high = (a.y < b.y ? b.y : a.y) - (int64_t)grid->origin.y + 1;
-    *begin = clamp(low < 0 ? 0 : low / grid->size, grid->rows);
-    *end = clamp(high < 0 ? 0 : high / grid->size, grid->rows) + 1;
+    double low = (double)(a.y < b.y ? a.y : b.y) - grid->origin.y - 1;
+    double high = (double)(a.y < b.y ? b.y : a.y) - grid->origin.y + 1;
+    *begin = cell_at(low, grid->inverse, grid->rows);
+    *end = cell_at(high, grid->inverse, grid->rows) + 1;
 }
 
 /* The columns it passes in that row, with a unit of margin. */
@@ -86,8 +81,44 @@ static iso_cells cells_of(const iso_edge_grid *grid, iso_point a, iso_point b, i
     }
     double p = x0 + from * (x1 - x0), q = x0 + to * (x1 - x0);
     double left = p < q ? p : q, right = p < q ? q : p;
-    return (iso_cells){cell_of(left - 2, grid->size, grid->columns),
-                       cell_of(right + 2, grid->size, grid->columns) + 1};
+    return (iso_cells){cell_at(left - 2, grid->inverse, grid->columns),
+                       cell_at(right + 2, grid->inverse, grid->columns) + 1};
+}
+
+/* Edges are short: most lie in a cell or two, and where the box of one covers no more than four,
+ * all of them will do. */
+enum { BOX_CELLS = 4 };
+
+typedef struct visitor {
+    const iso_edge_grid *grid;
+    int32_t *first, *in; /* in: NULL while counting */
+    int64_t entries;
+} visitor;
+
+static void visit(visitor *v, int32_t row, int32_t begin, int32_t end, int32_t edge) {
+    int32_t cell = row * v->grid->columns;
+    for (int32_t c = cell + begin; c < cell + end; c++) {
+        if (v->in)
+            v->in[v->first[c + 1]++] = edge;
+        else
+            v->first[c + 2]++;
+    }
+    v->entries += end - begin;
+}
+
+static void visit_cells(visitor *v, const iso_path_edge *e, int32_t edge) {
+    const iso_edge_grid *grid = v->grid;
+    double x0 = (double)e->a.x - grid->origin.x, x1 = (double)e->b.x - grid->origin.x;
+    double inverse = grid->inverse;
+    int32_t left = cell_at((x0 < x1 ? x0 : x1) - 2, inverse, grid->columns);
+    int32_t right = cell_at((x0 < x1 ? x1 : x0) + 2, inverse, grid->columns) + 1;
+    int32_t low, high;
+    rows_of(&low, &high, grid, e->a, e->b);
+    int small = (right - left) * (int64_t)(high - low) <= BOX_CELLS;
+    for (int32_t row = low; row < high; row++) {
+        iso_cells c = small ? (iso_cells){left, right} : cells_of(grid, e->a, e->b, row);
+        visit(v, row, c.begin, c.end, edge);
+    }
 }
 
 iso_status iso_edge_grid_build(iso_edge_grid *grid, const iso_path_edge *edge, int32_t count,
@@ -96,32 +127,20 @@ iso_status iso_edge_grid_build(iso_edge_grid *grid, const iso_path_edge *edge, i
     if (count == 0)
         return ISO_OK;
     choose_cells(grid);
-    int32_t cells = grid->columns * grid->rows, begin, end;
+    int32_t cells = grid->columns * grid->rows;
     ISO_TRY(ISO_PUSH(grid->first, scratch, (int64_t)cells + 2));
     memset(grid->first, 0, ((size_t)cells + 2) * sizeof *grid->first);
-    int64_t entries = 0;
-    for (int32_t i = 0; i < count; i++) {
-        rows_of(&begin, &end, grid, edge[i].a, edge[i].b);
-        for (int32_t r = begin; r < end; r++) {
-            iso_cells c = cells_of(grid, edge[i].a, edge[i].b, r);
-            for (int32_t k = c.begin; k < c.end; k++)
-                grid->first[r * grid->columns + k + 2]++;
-            entries += c.end - c.begin;
-        }
-    }
-    if (entries > INT32_MAX)
+    visitor v = {.grid = grid, .first = grid->first};
+    for (int32_t i = 0; i < count; i++)
+        visit_cells(&v, &edge[i], i);
+    if (v.entries > INT32_MAX)
         return iso_fail(ISO_OUTSIDE, "a layer's walls are too many to look for ways between them");
-    ISO_TRY(ISO_PUSH(grid->in, scratch, entries));
+    ISO_TRY(ISO_PUSH(grid->in, scratch, v.entries));
     for (int32_t c = 0; c < cells; c++)
         grid->first[c + 2] += grid->first[c + 1];
-    for (int32_t i = 0; i < count; i++) {
-        rows_of(&begin, &end, grid, edge[i].a, edge[i].b);
-        for (int32_t r = begin; r < end; r++) {
-            iso_cells c = cells_of(grid, edge[i].a, edge[i].b, r);
-            for (int32_t k = c.begin; k < c.end; k++)
-                grid->in[grid->first[r * grid->columns + k + 1]++] = i;
-        }
-    }
+    v.in = grid->in;
+    for (int32_t i = 0; i < count; i++)
+        visit_cells(&v, &edge[i], i);
     return ISO_OK;
 }
 
@@ -190,11 +209,10 @@ int iso_edge_grid_has(const iso_edge_grid *grid, iso_point a, iso_point b) {
 /* An edge counts in the one cell in which it crosses the ray to the right of p. */
 int iso_edge_grid_contains(const iso_edge_grid *grid, iso_point p, int32_t begin, int32_t end) {
     int odd = 0;
-    int64_t y = (int64_t)p.y - grid->origin.y;
-    if (grid->count == 0 || y < 0 || y / grid->size >= grid->rows)
+    if (grid->count == 0)
         return 0;
-    int32_t row = (int32_t)(y / grid->size);
-    int32_t column = cell_of((double)p.x - grid->origin.x, grid->size, grid->columns);
+    int32_t row = cell_at((double)p.y - grid->origin.y, grid->inverse, grid->rows);
+    int32_t column = cell_at((double)p.x - grid->origin.x, grid->inverse, grid->columns);
     for (; column < grid->columns; column++) {
         int32_t cell = row * grid->columns + column;
         for (int32_t k = grid->first[cell]; k < grid->first[cell + 1]; k++) {
@@ -203,7 +221,7 @@ int iso_edge_grid_contains(const iso_edge_grid *grid, iso_point p, int32_t begin
                 continue;
             double t = ((double)p.y - e->a.y) / ((double)e->b.y - e->a.y);
             double x = e->a.x + t * ((double)e->b.x - e->a.x);
-            if (x > p.x && cell_of(x - grid->origin.x, grid->size, grid->columns) == column)
+            if (x > p.x && cell_at(x - grid->origin.x, grid->inverse, grid->columns) == column)
                 odd ^= 1;
         }
     }
@@ -217,10 +235,10 @@ int32_t iso_edge_grid_nearest(const iso_edge_grid *grid, iso_point p, int32_t re
     if (grid->count == 0)
         return -1;
     double x = (double)p.x - grid->origin.x, y = (double)p.y - grid->origin.y;
-    int32_t left = cell_of(x - reach, grid->size, grid->columns);
-    int32_t right = cell_of(x + reach, grid->size, grid->columns);
-    int32_t low = cell_of(y - reach, grid->size, grid->rows);
-    int32_t high = cell_of(y + reach, grid->size, grid->rows);
+    int32_t left = cell_at(x - reach, grid->inverse, grid->columns);
+    int32_t right = cell_at(x + reach, grid->inverse, grid->columns);
+    int32_t low = cell_at(y - reach, grid->inverse, grid->rows);
+    int32_t high = cell_at(y + reach, grid->inverse, grid->rows);
     for (int32_t r = low; r <= high; r++)
         for (int32_t k = grid->first[r * grid->columns + left];
              k < grid->first[r * grid->columns + right + 1]; k++) {

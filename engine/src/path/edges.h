@@ -18,6 +18,7 @@ typedef struct iso_edge_grid {
     int32_t *first; /* [columns * rows + 1] */
     int32_t *in;    /* [first[columns * rows]] edges of each cell */
     int32_t columns, rows, size;
+    double inverse; /* 1 / size: cells are told by products, always the same ones */
     iso_point origin;
 } iso_edge_grid;
 

@@ -8,6 +8,9 @@
  * already printed before path k are the owners 0 .. k - 1. */
 enum { WALL = -1 };
 
+/* Steps of a search for a way that nobody has asked for: enough for a few corners. */
+enum { SHORT_SEARCH = 10000 };
+
 typedef struct planning {
     iso_paths *paths;
     const iso_order_options *options;
@@ -41,6 +44,8 @@ static iso_status list_edges(planning *p) {
     ISO_TRY(iso_ways_new(&p->ways, &p->grid, (int32_t)bends, p->scratch));
     p->ways.begin = WALL;
     p->ways.end = WALL + 1;
+    if (!p->options->avoid_crossing)
+        p->ways.patience = SHORT_SEARCH;
     n = 0;
     for (int32_t k = 0; k < p->paths->count; k++) {
         const iso_path *path = &p->paths->path[k];
@@ -132,12 +137,18 @@ static iso_status go_around(planning *p, int32_t k, iso_point from, iso_point to
     return ISO_OK;
 }
 
-static iso_status plan(planning *p, int32_t k, iso_point from) {
+/* Groups are islands, with nothing between them; what the layer below ended with may be anywhere.
+ */
+static int is_elsewhere(const iso_path *path, const iso_path *last) {
+    return last && (last->group != path->group || last->object != path->object);
+}
+
+static iso_status plan(planning *p, int32_t k, iso_point from, const iso_path *last) {
     iso_path *path = &p->paths->path[k];
     iso_point to = vertex_at(p, path, 0);
     double limit = p->options->cost.retract_before;
     int hidden = 0;
-    if ((double)iso_distance_squared(from, to) <= limit * limit)
+    if ((double)iso_distance_squared(from, to) <= limit * limit || is_elsewhere(path, last))
         return ISO_OK;
     ISO_TRY(build(p));
     if (iso_ways_is_inside(&p->ways, from, to))
@@ -154,13 +165,15 @@ iso_status iso_travel_plan(iso_paths *paths, iso_point from, const iso_order_opt
     planning p = {.paths = paths, .options = options, .scratch = scratch};
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     iso_status status = ISO_OK;
+    const iso_path *last = NULL;
     if (!options->retract_crossing_only && !options->avoid_crossing)
         return ISO_OK;
     for (int32_t k = 0; k < paths->count && status == ISO_OK; k++) {
         const iso_path *path = &paths->path[k];
         if (path->count < 2)
             continue; /* nothing is drawn, so the nozzle doesn't go there */
-        status = plan(&p, k, from);
+        status = plan(&p, k, from, last);
+        last = path;
         from = vertex_at(&p, path, path->closed ? 0 : path->count - 1);
     }
     iso_arena_pop(scratch, mark);

@@ -6,7 +6,7 @@ enum { STEPS_MAX = 1 << 20, LOOK = 64 /* steps that a look along a way costs, ab
 
 iso_status iso_ways_new(iso_ways *ways, const iso_edge_grid *grid, int32_t vertices,
                         iso_arena *scratch) {
-    *ways = (iso_ways){.grid = grid};
+    *ways = (iso_ways){.grid = grid, .patience = STEPS_MAX};
     ISO_TRY(ISO_PUSH(ways->bend, scratch, vertices));
     ISO_TRY(ISO_PUSH(ways->near, scratch, vertices));
     ISO_TRY(ISO_PUSH(ways->length, scratch, (int64_t)vertices + 1));
@@ -123,7 +123,7 @@ int iso_ways_find(iso_ways *ways, iso_point from, iso_point to, double longest) 
         ways->length[v] = INFINITY;
         ways->settled[v] = 0;
     }
-    for (int64_t steps = STEPS_MAX; steps > 0; steps -= 2 * (int64_t)n + LOOK) {
+    for (int64_t steps = ways->patience; steps > 0; steps -= 2 * (int64_t)n + LOOK) {
         relax(ways, u, from, to, longest);
         u = next_node(ways, to);
         if (u < 0)

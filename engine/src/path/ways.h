@@ -16,6 +16,7 @@ typedef struct iso_ways {
     int32_t count;
     int32_t *near; /* [nears] bends that a way of the allowed length may reach */
     int32_t nears;
+    int64_t patience; /* steps that a search may take; at first a million */
     double *length;   /* [nears + 1] of the way so far, units; at the end: `to` */
     int32_t *back;    /* [nears + 1] the bend before; -1: `from` */
     uint8_t *settled; /* [nears + 1] */
@@ -35,8 +36,8 @@ int iso_ways_is_inside(const iso_ways *ways, iso_point from, iso_point to);
 
 /* The shortest way inside (A* on the graph of bends that see each other, where a way is tangent to
  * both: Hart, Nilsson and Raphael 1968; Lozano-Perez and Wesley 1979). Its bends are point[0 ..
- * points - 1]. 0 if there is none no longer than `longest`, or none is found within a million steps
- * or so. */
+ * points - 1]. 0 if there is none no longer than `longest`, or none is found within so many
+ * steps. */
 int iso_ways_find(iso_ways *ways, iso_point from, iso_point to, double longest);
 
 #endif
