@@ -184,10 +184,14 @@ static double steepness(const zigzag *run, int32_t dart) {
     return lengths > 0 ? fabs(cross) / lengths : 1;
 }
 
-/* An end without a link: out to the edge, since nothing else fills the margin there. */
+/* An end without a link: out to the edge, since nothing else fills the margin there; but by no more
+ * than lines overlap with what is around anyway. If that is nothing, the edge may be the model's.
+ */
 static void draw_out(const zigzag *run, iso_point *end, int32_t dart) {
     iso_point here = place(run, dart), before = place(run, dart ^ 2);
     double length = iso_hatch_distance(before, here), margin = run->options->margin;
+    double overlap = run->options->spacing / 2 - margin;
+    margin = margin < overlap ? margin : overlap;
     if (!run->options->fit || length <= 0 || margin <= 0)
         return;
     double steep = steepness(run, dart);
