@@ -233,6 +233,8 @@ static iso_status print_one_by_one(iso_job *job) {
     for (int32_t i = 0; i < instances->count; i++) {
         iso_step step = {.instance = &instances->instance[i], .count = 1};
         int32_t object = step.instance->object;
+        if (i > 0)
+            ISO_TRY(iso_gcode_next_object(job->writer, i));
         stack_rewind(&job->stack[object]);
         job->next[object] = 0;
         for (int32_t index = 0; next_step(&step, job); index++)
@@ -309,6 +311,8 @@ static iso_status look_at_first_layers(iso_job *job) {
 
 static iso_status begin_output(iso_job *job, const char *path) {
     iso_gcode_options gcode = settings_of_gcode(job->options, &job->texts, job->hooks->timestamp);
+    gcode.object = job->plate.label;
+    gcode.object_count = job->plate.label ? job->plate.instances.count : 0;
     ISO_TRY(iso_output_open(&job->output, path));
     ISO_TRY(iso_gcode_writer_new(&job->writer, job->output, &gcode));
     return iso_gcode_begin(job->writer);

@@ -114,6 +114,53 @@ static iso_status place(iso_plate *plate, const iso_options *options) {
     return status;
 }
 
+/* The nearest copy next, from the bed's origin on. A bed holds few enough for all pairs. */
+static void chain(iso_instances *instances) {
+    iso_point at = {0, 0};
+    for (int32_t i = 0; i < instances->count; i++) {
+        int64_t least = INT64_MAX;
+        int32_t nearest = i;
+        for (int32_t k = i; k < instances->count; k++) {
+            int64_t dx = (int64_t)instances->instance[k].by.x - at.x;
+            int64_t dy = (int64_t)instances->instance[k].by.y - at.y;
+            if (dx * dx + dy * dy < least) {
+                least = dx * dx + dy * dy;
+                nearest = k;
+            }
+        }
+        iso_instance next = instances->instance[nearest];
+        instances->instance[nearest] = instances->instance[i];
+        instances->instance[i] = next;
+        at = next.by;
+    }
+}
+
+static iso_status make_labels(iso_plate *plate) {
+    int64_t points = 0;
+    int32_t count = plate->instances.count;
+    ISO_TRY(iso_objects_find_hulls(&plate->objects));
+    for (int32_t i = 0; i < count; i++)
+        points += plate->objects.object[plate->instances.instance[i].object].hull.first[1];
+    ISO_TRY(ISO_ALLOCATE(plate->label, count));
+    ISO_TRY(ISO_ALLOCATE(plate->outline, points));
+    iso_vec2 *outline = plate->outline;
+    for (int32_t i = 0; i < count; i++) {
+        const iso_instance *instance = &plate->instances.instance[i];
+        const iso_object *object = &plate->objects.object[instance->object];
+        plate->label[i] =
+            (iso_gcode_object){.name = object->name,
+                               .model = instance->object,
+                               .copy = instance->copy,
+                               .center = {iso_mm(instance->by.x), iso_mm(instance->by.y)},
+                               .outline = outline,
+                               .outline_count = object->hull.first[1]};
+        for (int32_t p = 0; p < object->hull.first[1]; p++)
+            *outline++ = (iso_vec2){iso_mm(object->hull.point[p].x + instance->by.x),
+                                    iso_mm(object->hull.point[p].y + instance->by.y)};
+    }
+    return ISO_OK;
+}
+
 iso_status plate_load(iso_plate *plate, iso_report *report, const iso_options *options,
                       const char *const *input, int32_t input_count) {
     ISO_TRY(make_objects(plate, report, options, input, input_count));
@@ -122,13 +169,17 @@ iso_status plate_load(iso_plate *plate, iso_report *report, const iso_options *o
     if (options->skirts > 0 &&
         (options->skirt_height > 1 || options->draft_shield == ISO_SHIELD_ENABLED))
         ISO_TRY(iso_objects_find_hulls(&plate->objects));
-    if (!options->complete_objects)
-        return ISO_OK;
     iso_clearance clearance = settings_of_clearance(options);
-    return iso_objects_sequence(&plate->instances, &plate->objects, &clearance);
+    if (options->complete_objects)
+        ISO_TRY(iso_objects_sequence(&plate->instances, &plate->objects, &clearance));
+    else
+        chain(&plate->instances);
+    return options->gcode_label_objects == ISO_LABELS_DISABLED ? ISO_OK : make_labels(plate);
 }
 
 void plate_free(iso_plate *plate) {
+    iso_release(plate->label);
+    iso_release(plate->outline);
     iso_instances_free(&plate->instances);
     iso_objects_free(&plate->objects);
 }

@@ -3,12 +3,15 @@
 #define ISO_PLATE_H
 
 #include <isoslice/config.h>
+#include <isoslice/gcode.h>
 #include <isoslice/object.h>
 #include <isoslice/report.h>
 
 typedef struct iso_plate {
     iso_objects objects;
-    iso_instances instances; /* in printing order if objects are printed one by one */
+    iso_instances instances; /* in printing order */
+    iso_gcode_object *label; /* [instances.count] if the G-code is to have them */
+    iso_vec2 *outline;       /* theirs */
 } iso_plate;
 
 /* Read the files, note them in the report, and find the place of every copy. ISO_OUTSIDE: beyond
