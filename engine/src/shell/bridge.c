@@ -23,8 +23,9 @@ enum {
 
 /* Of a line's length over air: that held at one end only counts for this much as not held. */
 #define HALF_HELD 0.6
-/* Directions within this part of the best are as good. */
+/* Directions within this of the best are as good, in the share and in the length. */
 #define ALIKE 0.02
+#define AS_LONG 1.005
 
 enum { PART, SUPPORT };
 
@@ -47,7 +48,7 @@ ISO_SORT(sort_meetings, iso_meeting, meeting_less)
 typedef struct iso_trial {
     double degrees;
     double unheld;  /* share of the length over air */
-    double longest; /* length over air that is held at both ends */
+    double longest; /* length over air */
 } iso_trial;
 
 typedef struct iso_sweeping {
@@ -142,7 +143,7 @@ static void add_gap(iso_tally *tally, const iso_sweeping *s, int64_t from, int64
     int held = is_held(s, from, -1) + is_held(s, to, 1);
     tally->all += length;
     tally->unheld += held == 2 ? 0 : held == 1 ? HALF_HELD * length : length;
-    if (held == 2 && length > tally->longest)
+    if (length > tally->longest)
         tally->longest = length;
 }
 
@@ -230,7 +231,7 @@ static double choose(const iso_trial *trial, int32_t count) {
         if (trial[i].unheld <= unheld + ALIKE && (longest < 0 || trial[i].longest < longest))
             longest = trial[i].longest;
     for (int32_t i = 0; i < count; i++)
-        if (trial[i].unheld <= unheld + ALIKE && trial[i].longest <= longest * (1 + ALIKE))
+        if (trial[i].unheld <= unheld + ALIKE && trial[i].longest <= longest * AS_LONG)
             return trial[i].degrees;
     return trial[0].degrees;
 }
