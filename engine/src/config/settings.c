@@ -58,8 +58,6 @@ static void set_outline(iso_layer_settings *s, const iso_options *options, bool 
 static iso_fill_options fill_of(const iso_options *options, iso_role role, bool first,
                                 double height, double density) {
     iso_fill_options fill = iso_fill_defaults(bead_of(options, role, first, height), density);
-    iso_vec2 center = iso_options_center(options);
-    fill.origin = (iso_point){iso_units(center.x), iso_units(center.y)};
     fill.angle = options->fill_angle;
     fill.like.role = (uint8_t)role;
     fill.like.rank = options->perimeters;
@@ -109,6 +107,23 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
     s->fill_inset = solid.spacing / 2 - overlap_of(s, options, first, height);
 }
 
+/* Lines so close that the nozzle's face smooths what is there, with little of their own. */
+static void set_ironing(iso_layer_settings *s, const iso_options *options, double height) {
+    int32_t spacing = iso_units(options->ironing_spacing);
+    s->irons = !options->ironing ? 0 : options->ironing_type == ISO_IRONING_SOLID ? 2 : 1;
+    s->ironing_inset = iso_units(options->nozzle_diameter) / 2;
+    s->ironing = s->top;
+    s->ironing.pattern = ISO_PATTERN_RECTILINEAR;
+    s->ironing.angle = s->top.angle + 45;
+    s->ironing.spacing = spacing;
+    s->ironing.fit = s->ironing.margin = 0;
+    s->ironing.link_max = 5 * spacing;
+    s->ironing.width = iso_units(options->nozzle_diameter);
+    s->ironing.area =
+        (int32_t)(spacing * height * ISO_UNITS_PER_MM * options->ironing_flowrate / 100);
+    s->ironing.like.role = ISO_ROLE_IRONING;
+}
+
 /* Threads through the air are round, as thick as the nozzle, and lie a little apart; else they are
  * beads of the layer's height with some other flow. */
 static iso_bead bridge_bead(const iso_options *options, iso_role role, bool first, double height) {
@@ -147,8 +162,8 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
 }
 
 /* Solid strips narrower than half a line are left to the walls above and below them, unless the
- * shell has to be as thick everywhere; others reach ANCHOR lines into the sparse fill, so that lines
- * across them are long enough to hold. */
+ * shell has to be as thick everywhere; others reach ANCHOR lines into the sparse fill, so that
+ * lines across them are long enough to hold. */
 static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                       double height) {
     bool full = options->fill_density >= 100;
@@ -156,7 +171,9 @@ static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t
     int32_t every = options->solid_infill_every_layers;
     bool exact = options->ensure_vertical_shell_thickness;
     s->shell = (iso_shell_options){
-        .narrowest = full ? 2 * spacing : exact ? spacing / 8 : spacing / 2,
+        .narrowest = full    ? 2 * spacing
+                     : exact ? spacing / 8
+                             : spacing / 2,
         .anchor = full ? 0 : SHELL_ANCHOR * spacing,
         .bridge_least = spacing,
         .bridge_anchor = BRIDGE_ANCHOR * spacing,
@@ -189,6 +206,7 @@ void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_
     set_walls(s, options, first, height);
     set_outline(s, options, first);
     set_fill(s, options, index, first, height);
+    set_ironing(s, options, height);
     set_shell(s, options, index, first, height);
     set_bridges(s, options, first, height);
 }
