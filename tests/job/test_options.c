@@ -3,13 +3,15 @@
 #include "solids.h"
 
 extern const option_row option_rows_print[], option_rows_machine[], option_rows_outline[],
-    option_rows_bent[];
+    option_rows_bent[], option_rows_infill[], option_rows_paths[];
 
 static const option_row *const tables[] = {
     option_rows_print,
     option_rows_machine,
     option_rows_outline,
     option_rows_bent,
+    option_rows_infill,
+    option_rows_paths,
 };
 
 int same_places(const print *a, const print *b) {

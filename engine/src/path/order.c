@@ -258,7 +258,7 @@ iso_status ordering_tour(iso_ordering *o, iso_run r) {
         stop[k] = (iso_stop){vertex[0].at, vertex[last].at};
     }
     ISO_TRY(iso_tour_nearest(tour, stop, count, o->position, o->scratch));
-    ISO_TRY(iso_tour_improve(tour, stop, count, o->position, &o->options->cost, o->scratch));
+    ISO_TRY(iso_tour_improve(tour, stop, count, o->position, &o->cost, o->scratch));
     for (int32_t n = 0; n < count; n++) {
         int32_t k = r.begin + (tour[n] >> 1);
         ordering_emit(o, k, tour[n] & 1 ? ordering_path(o, k)->count - 1 : 0);
@@ -449,7 +449,10 @@ iso_status iso_order_layer(iso_paths *out, const iso_paths *in, iso_order_state 
                       .scratch = scratch,
                       .options = options,
                       .seams = &state->seams,
+                      .cost = options->cost,
                       .position = state->position};
+    if (options->retract_crossing_only)
+        o.cost.retraction = 0; /* most of them are hidden */
     iso_paths_clear(out);
     iso_seams_next_layer(&state->seams);
     iso_status status = order(&o);

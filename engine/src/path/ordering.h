@@ -31,6 +31,7 @@ typedef struct iso_ordering {
     iso_arena *scratch;
     const iso_order_options *options;
     iso_seams *seams;
+    iso_travel_cost cost; /* of travels within a group */
     iso_point position;
     iso_order_key *key;
     int32_t count;
