@@ -26,8 +26,11 @@ typedef struct iso_layer_settings {
     int32_t bridge_angle_given;    /* else each bridge has its own */
     int32_t lid_least;             /* units; see iso_shell_find_lids; 0: no lids */
     iso_overhang_options overhang; /* reach 0: none */
-    int32_t has_sparse;            /* else the area within the shells stays empty */
-    iso_fill_options sparse;       /* .z is not set */
+    int32_t irons;                 /* tops are passed over again; 2: all solid areas are */
+    int32_t ironing_inset;         /* units */
+    iso_fill_options ironing;
+    int32_t has_sparse;      /* else the area within the shells stays empty */
+    iso_fill_options sparse; /* .z is not set */
 } iso_layer_settings;
 
 /* `index` counts from 0; `height` in mm. */
