@@ -124,6 +124,7 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
     int32_t index = stack->begin + (int32_t)number;
     iso_layer *layer = window_layer(&stack->window, index);
     settings_of_layer(&layer->settings, stack->options, index, stack->levels.height[index]);
+    layer->settings.sparse.z = iso_units(stack->levels.cut[index]);
     if (stack->options->ironing_type == ISO_IRONING_TOPMOST && index + 1 < stack->levels.count)
         layer->settings.irons = 0;
     return layer_outline(layer, &stack->crew->hand[worker], stack->slices, stack->model_count,
