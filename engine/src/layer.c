@@ -160,6 +160,8 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
     iso_hand *hand = f->hand;
     iso_fill_options grouped = *fill;
     iso_offset_options inset = iso_offset_defaults(-f->layer->settings.fill_inset);
+    if (fill->like.role == ISO_ROLE_IRONING)
+        inset.distance = -f->layer->settings.ironing_inset;
     inset.join = ISO_JOIN_ROUND;
     ISO_TRY(iso_offset(&hand->inside, part, &inset, hand->planar));
     ISO_TRY(check(&hand->inside, hand));
@@ -227,7 +229,11 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
     ISO_TRY(fill_region(&filling, &shell->lid, &s->lid));
     ISO_TRY(fill_region(&filling, &shell->top, &s->top));
     ISO_TRY(fill_region(&filling, &shell->solid, &s->solid));
-    return s->has_sparse ? fill_region(&filling, &shell->sparse, &s->sparse) : ISO_OK;
+    if (s->has_sparse)
+        ISO_TRY(fill_region(&filling, &shell->sparse, &s->sparse));
+    if (s->irons > 0)
+        ISO_TRY(fill_region(&filling, &shell->top, &s->ironing));
+    return s->irons > 1 ? fill_region(&filling, &shell->solid, &s->ironing) : ISO_OK;
 }
 
 /* 10 um: no printer's fill ends that exactly, and each operation on it gets faster. */
