@@ -287,7 +287,7 @@ static void test_random_walls(void) {
                     double x = a.x + s / length * (b.x - a.x), y = a.y + s / length * (b.y - a.y);
                     double d = distance_to(&support, x, y);
                     int over = !inside(&support, x, y) && d > usual.reach;
-                    moved += distance_to(&walls, x, y) > 3;
+                    moved += distance_to(&walls, x, y) > 2;
                     over_count += over;
                     /* an excursion shorter than a step may go unseen */
                     if (fabs(d - usual.reach) > 400)

@@ -98,39 +98,40 @@ static iso_status add_piece(iso_overhanging *o, iso_point from, iso_point to, in
     return ISO_OK;
 }
 
-/* Where between two places the air begins or ends. */
-static iso_point find_change(const iso_overhanging *o, iso_point a, iso_point b, bool over) {
+/* Where between two shares of an edge the air begins or ends. */
+static iso_point find_change(const iso_overhanging *o, const iso_point edge[2], double low,
+                             double high, bool over) {
     enum { HALVINGS = 10 };
     for (int i = 0; i < HALVINGS; i++) {
-        iso_point middle = between(a, b, 0.5);
-        *(is_over_air(o, middle) == over ? &a : &b) = middle;
+        double middle = (low + high) / 2;
+        *(is_over_air(o, between(edge[0], edge[1], middle)) == over ? &low : &high) = middle;
     }
-    return a;
+    return between(edge[0], edge[1], low);
 }
 
-static iso_status cut_edge(iso_overhanging *o, iso_point a, iso_point b, int32_t vertex) {
-    int32_t steps = count_steps(a, b, o->mask.cell);
-    iso_point from = a, at = a;
-    bool over = is_over_air(o, a);
+static iso_status cut_edge(iso_overhanging *o, const iso_point edge[2], int32_t vertex) {
+    int32_t steps = count_steps(edge[0], edge[1], o->mask.cell);
+    iso_point from = edge[0];
+    bool over = is_over_air(o, from);
     for (int32_t k = 1; k <= steps; k++) {
-        iso_point next = between(a, b, (double)k / steps);
-        if (is_over_air(o, next) != over) {
-            iso_point change = find_change(o, at, next, over);
-            ISO_TRY(add_piece(o, from, change, vertex, over));
-            from = change;
-            over = !over;
-        }
-        at = next;
+        double t = (double)k / steps;
+        if (is_over_air(o, between(edge[0], edge[1], t)) == over)
+            continue;
+        iso_point change = find_change(o, edge, (double)(k - 1) / steps, t, over);
+        ISO_TRY(add_piece(o, from, change, vertex, over));
+        from = change;
+        over = !over;
     }
-    return add_piece(o, from, b, vertex, over);
+    return add_piece(o, from, edge[1], vertex, over);
 }
 
 static iso_status cut_path(iso_overhanging *o, const iso_paths *paths, const iso_path *path) {
     const iso_path_vertex *v = paths->vertex + path->first;
     o->count = 0;
     for (int32_t i = 0; i + !path->closed < path->count; i++) {
-        iso_point a = v[i].at, b = v[i + 1 < path->count ? i + 1 : 0].at;
-        ISO_TRY(edge_in_mask(&o->mask, a, b) ? add_piece(o, a, b, i, false) : cut_edge(o, a, b, i));
+        iso_point edge[] = {v[i].at, v[i + 1 < path->count ? i + 1 : 0].at};
+        ISO_TRY(edge_in_mask(&o->mask, edge[0], edge[1]) ? add_piece(o, edge[0], edge[1], i, false)
+                                                         : cut_edge(o, edge, i));
     }
     return ISO_OK;
 }
