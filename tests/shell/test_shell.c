@@ -151,16 +151,20 @@ static void free_runs(runs *r) {
 
 /* Regions, disjoint by the kernel's word, and nothing lost but slivers along the cuts. */
 static void check_parts(const iso_shell *shell, const iso_region *fill) {
-    const iso_region *part[] = {&shell->top, &shell->solid, &shell->sparse};
+    enum { PARTS = 5 };
+    const iso_region *part[] = {&shell->top, &shell->solid, &shell->sparse, &shell->bridge,
+                                &shell->lid};
     double sum = 0;
     iso_region common = {0};
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < PARTS; i++) {
         CHECK_OK(iso_region_validate(part[i], scratch));
         sum += area_of(part[i]);
         CHECK_OK(iso_boolean(&common, ISO_DIFFERENCE, part[i], fill, scratch));
         CHECK_NEAR(0, area_of(&common), 0.02);
-        CHECK_OK(iso_boolean(&common, ISO_INTERSECTION, part[i], part[(i + 1) % 3], scratch));
-        CHECK_NEAR(0, area_of(&common), 0.02);
+        for (int k = 0; k < i; k++) {
+            CHECK_OK(iso_boolean(&common, ISO_INTERSECTION, part[i], part[k], scratch));
+            CHECK_NEAR(0, area_of(&common), 0.02);
+        }
     }
     CHECK_NEAR(area_of(fill), sum, 0.02);
     iso_region_free(&common);
@@ -389,6 +393,116 @@ static void test_top_comes_first(void) {
     iso_region_free(&above);
 }
 
+/* ---- bridges, lids and small parts ---- */
+
+static void split_over(iso_shell *shell, const iso_region *fill, iso_shell_neighbours around,
+                       const iso_shell_options *options) {
+    CHECK_OK(iso_shell_split(shell, fill, &around, options, scratch));
+    check_parts(shell, fill);
+}
+
+/* A roof over a pit: solid anyway, and a bridge that reaches onto the rim; the same at full
+ * density, where no shells are told apart below. */
+static void test_bridge_over_a_pit(void) {
+    iso_region outline = square(10), rim = square(10), fill = square(9);
+    add_box(&rim, -4, -4, 4, 4, 1);
+    iso_shell_options options = {.narrowest = 4000, .bridge_least = 4000, .bridge_anchor = 5000};
+    iso_shell shell = {0};
+    for (int32_t bottom = 0; bottom < 3; bottom++)
+        for (int32_t top = 0; top < 2; top++) {
+            iso_shell_neighbours around = {.own = &outline,
+                                           .above = {.layers = top, .missing = top},
+                                           .below = {bottom, 0, bottom > 0, {&rim, NULL}},
+                                           .beneath = &rim};
+            split_over(&shell, &fill, around, &options);
+            CHECK_NEAR(81, area_of(&shell.bridge), 1e-3);
+            CHECK_NEAR(0, area_of(&shell.solid), 1e-3);
+            CHECK_NEAR(top ? 324 - 81 : 0, area_of(&shell.top), 1e-3);
+            CHECK_NEAR(top ? 0 : 324 - 81, area_of(&shell.sparse), 1e-3);
+        }
+    /* the layer above lies on the roof */
+    iso_shell_neighbours higher = {
+        .own = &outline, .below = {2, 0, 2, {&outline, &rim}}, .beneath = &outline};
+    split_over(&shell, &fill, higher, &options);
+    CHECK_EQUAL(0, shell.bridge.count);
+    CHECK_NEAR(64, area_of(&shell.solid), 1e-3);
+    options.bridge_least = 90000; /* more than the pit is wide */
+    higher.below = (iso_shell_side){1, 0, 1, {&rim}};
+    higher.beneath = &rim;
+    split_over(&shell, &fill, higher, &options);
+    CHECK_EQUAL(0, shell.bridge.count);
+    CHECK_NEAR(64, area_of(&shell.solid), 1e-3);
+    iso_shell_free(&shell);
+    iso_region_free(&outline);
+    iso_region_free(&rim);
+    iso_region_free(&fill);
+}
+
+/* A solid ring around a sparse middle, over sparse fill of some size. */
+static void test_lids(void) {
+    iso_region outline = square(10), step = square(5), fill = square(9);
+    static const struct {
+        double below, lid; /* half sides; 0: none */
+    } cases[] = {{9, 9}, {7, 7.9}, {6.3, 7.2}, {5.5, 0}, {5, 0}, {3, 0}};
+    iso_shell_options options = {.narrowest = 4000};
+    iso_shell shell = {0};
+    for (int i = 0; i < 6; i++) {
+        iso_region below = square(cases[i].below);
+        iso_shell_neighbours around = {
+            .own = &outline, .next = &outline, .above = {2, 0, 2, {&outline, &step}}};
+        split_over(&shell, &fill, around, &options);
+        CHECK_NEAR(324 - 100, area_of(&shell.solid), 1e-3);
+        CHECK_OK(iso_shell_find_lids(&shell, &below, 8000, 9000, scratch));
+        check_parts(&shell, &fill);
+        double lid = cases[i].lid > 0 ? 4 * cases[i].lid * cases[i].lid - 100 : 0;
+        CHECK_NEAR(lid, area_of(&shell.lid), 0.02);
+        CHECK_NEAR(324 - 100 - lid, area_of(&shell.solid), 0.02);
+        CHECK_OK(iso_shell_find_lids(&shell, NULL, 8000, 9000, scratch));
+        CHECK_EQUAL(0, shell.lid.count);
+        iso_region_free(&below);
+    }
+    iso_shell_free(&shell);
+    iso_region_free(&outline);
+    iso_region_free(&step);
+    iso_region_free(&fill);
+}
+
+static void test_small_sparse_parts_are_solid(void) {
+    iso_region outline = square(10), step = square(2), fill = square(9), two = {0};
+    add_box(&two, -9, -9, 1, 1, 0);
+    add_box(&two, 3, 3, 7, 7, 0);
+    iso_shell_options options = {.narrowest = 4000, .sparse_least = (int64_t)2 * 20 * MM * MM};
+    iso_shell shell = {0};
+    split_over(&shell, &two, (iso_shell_neighbours){.own = &outline}, &options);
+    CHECK_NEAR(16, area_of(&shell.solid), 1e-6);
+    CHECK_NEAR(100, area_of(&shell.sparse), 1e-6);
+    /* an island within a solid ring becomes one with it */
+    iso_shell_neighbours ring = {
+        .own = &outline, .next = &outline, .above = {2, 0, 2, {&outline, &step}}};
+    split_over(&shell, &fill, ring, &options);
+    CHECK_EQUAL(1, shell.solid.count);
+    CHECK_NEAR(324, area_of(&shell.solid), 1e-3);
+    CHECK_EQUAL(0, shell.sparse.count);
+    options.sparse_least = (int64_t)2 * 15 * MM * MM;
+    split_over(&shell, &fill, ring, &options);
+    CHECK_NEAR(16, area_of(&shell.sparse), 1e-3);
+    /* nothing sparse at all */
+    options.whole = 1;
+    split_over(&shell, &two, (iso_shell_neighbours){.own = &outline}, &options);
+    CHECK_NEAR(116, area_of(&shell.solid), 1e-6);
+    CHECK_EQUAL(0, shell.sparse.count);
+    ring.next = &step;
+    ring.above = (iso_shell_side){1, 0, 1, {&step}};
+    split_over(&shell, &fill, ring, &options);
+    CHECK_NEAR(324 - 16, area_of(&shell.top), 1e-3);
+    CHECK_NEAR(16, area_of(&shell.solid), 1e-3);
+    iso_shell_free(&shell);
+    iso_region_free(&outline);
+    iso_region_free(&step);
+    iso_region_free(&fill);
+    iso_region_free(&two);
+}
+
 /* ---- random outlines ---- */
 
 static uint64_t seed = 20;
@@ -439,6 +553,18 @@ static void test_random_outlines(void) {
         iso_shell_options options = {.narrowest = 1000 * (trial % 6), .anchor = 2000 * (trial % 3)};
         iso_shell shell = {0};
         split(&shell, &fill, &around, &options, 16);
+        options.bridge_least = 1500 * (trial % 4);
+        options.bridge_anchor = 4000 * (trial % 2);
+        options.sparse_least = (int64_t)2 * (trial % 3) * 10 * MM * MM;
+        options.whole = trial % 8 == 7;
+        iso_shell_neighbours over = {.own = &outline[0],
+                                     .next = list[0],
+                                     .above = {1, 0, 1, {list[0]}},
+                                     .below = {1, 0, 1, {list[3]}},
+                                     .beneath = list[3]};
+        split_over(&shell, &fill, over, &options);
+        CHECK_OK(iso_shell_find_lids(&shell, list[4], 1000 + 500 * (trial % 9), 3000, scratch));
+        check_parts(&shell, &fill);
         iso_shell_free(&shell);
         iso_region_free(&fill);
         for (int i = 0; i < 7; i++)
@@ -495,8 +621,16 @@ static void test_widening(void) {
 static void test_no_memory(void) {
     iso_region outline[] = {random_region(), random_region(), random_region()};
     iso_region fill = random_region();
-    iso_shell_neighbours around = {
-        &fill, &outline[0], {2, 0, 2, {&outline[1], &outline[0]}}, {1, 0, 1, {&outline[2]}}, NULL};
+    iso_shell_neighbours around = {&fill,
+                                   &outline[0],
+                                   {2, 0, 2, {&outline[1], &outline[0]}},
+                                   {1, 0, 1, {&outline[2]}},
+                                   &outline[2]};
+    const iso_shell_options full = {.narrowest = 4000,
+                                    .anchor = 3000,
+                                    .bridge_least = 3000,
+                                    .bridge_anchor = 3000,
+                                    .sparse_least = (int64_t)2 * 50 * MM * MM};
     iso_status status = ISO_NO_MEMORY;
     int64_t n = 0;
     for (; status == ISO_NO_MEMORY && n < 2000; n++) {
@@ -504,10 +638,12 @@ static void test_no_memory(void) {
         iso_planar_scratch *own;
         CHECK_OK(iso_planar_scratch_new(&own));
         iso_fail_allocation_after(n);
-        status = iso_shell_split(&shell, &fill, &around, &usual, own);
+        status = iso_shell_split(&shell, &fill, &around, &full, own);
+        if (status == ISO_OK)
+            status = iso_shell_find_lids(&shell, &outline[1], 4000, 3000, own);
         iso_fail_allocation_after(-1);
         if (status != ISO_OK)
-            CHECK(shell.top.count == 0 && shell.solid.count == 0 && shell.sparse.count == 0);
+            CHECK(shell.lid.count == 0 && shell.solid.count == 0);
         /* the scratch is as good as new */
         iso_shell_free(&shell);
         CHECK_OK(iso_shell_split(&shell, &fill, &around, &usual, own));
@@ -533,6 +669,9 @@ int main(void) {
     RUN(test_none);
     RUN(test_narrow_strips_and_anchors);
     RUN(test_top_comes_first);
+    RUN(test_bridge_over_a_pit);
+    RUN(test_lids);
+    RUN(test_small_sparse_parts_are_solid);
     RUN(test_random_outlines);
     RUN(test_levels);
     RUN(test_widening);
