@@ -36,7 +36,7 @@ static void test_together_and_apart(void) {
     if (make(&objects, s, 2, &(iso_object_options){0})) {
         if (CHECK_EQUAL(1, objects.count)) {
             CHECK_EQUAL(2, objects.object[0].mesh_count);
-            CHECK(strcmp(objects.object[0].name, "one") == 0);
+            CHECK(strcmp(objects.object[0].name, "one.stl") == 0);
             check_lies(&objects.object[0], 6, 6, 6);
             CHECK_NEAR(1, objects.object[0].mesh[1].min.z, 1e-12);
         }
@@ -45,7 +45,7 @@ static void test_together_and_apart(void) {
     two_boxes(s);
     if (make(&objects, s, 2, &(iso_object_options){.apart = true})) {
         if (CHECK_EQUAL(2, objects.count)) {
-            CHECK(strcmp(objects.object[1].name, "two") == 0);
+            CHECK(strcmp(objects.object[1].name, "two.stl") == 0);
             check_lies(&objects.object[0], 1, 2, 3);
             check_lies(&objects.object[1], 1, 6, 5);
         }
@@ -64,8 +64,8 @@ static void test_cut(void) {
     two_boxes(s);
     if (make(&objects, s, 2, &(iso_object_options){.cut = 2})) {
         if (CHECK_EQUAL(2, objects.count)) {
-            CHECK(strcmp(objects.object[0].name, "one_lower") == 0);
-            CHECK(strcmp(objects.object[1].name, "one_upper") == 0);
+            CHECK(strcmp(objects.object[0].name, "one_lower.stl") == 0);
+            CHECK(strcmp(objects.object[1].name, "one_upper.stl") == 0);
             check_lies(&objects.object[0], 6, 6, 2);
             check_lies(&objects.object[1], 6, 6, 4);
         }
@@ -75,7 +75,7 @@ static void test_cut(void) {
     if (make(&objects, s, 2, &(iso_object_options){.cut = 4, .drop_lower = true})) {
         if (CHECK_EQUAL(1, objects.count)) {
             CHECK_EQUAL(1, objects.object[0].mesh_count);
-            CHECK(strcmp(objects.object[0].name, "one") == 0);
+            CHECK(strcmp(objects.object[0].name, "one.stl") == 0);
             check_lies(&objects.object[0], 1, 6, 2);
         }
         iso_objects_free(&objects);
@@ -126,7 +126,7 @@ static void test_split(void) {
     nest(s);
     if (make(&objects, s, 1, &(iso_object_options){.split = true})) {
         if (CHECK_EQUAL(3, objects.count)) {
-            CHECK(strcmp(objects.object[2].name, "one_3") == 0);
+            CHECK(strcmp(objects.object[2].name, "one_3.stl") == 0);
             check_lies(&objects.object[0], 24, 24, 12);
             check_lies(&objects.object[1], 8, 8, 2);
             check_lies(&objects.object[2], 2, 3, 4);

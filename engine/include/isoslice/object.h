@@ -57,7 +57,7 @@ ISO_API iso_status iso_meshes_hull(iso_region *hull, const iso_mesh *mesh,
 enum { ISO_OBJECT_NAME_SIZE = 128 };
 
 typedef struct iso_object {
-    char name[ISO_OBJECT_NAME_SIZE]; /* of the file, without directory; pieces are numbered */
+    char name[ISO_OBJECT_NAME_SIZE]; /* the file's, without its directory; pieces add to it */
     int32_t mesh_count;
     iso_mesh *mesh;    /* [mesh_count], owned; what they overlap in counts once */
     iso_vec3 min, max; /* of all of them: min.x = -max.x, min.y = -max.y, about */

@@ -11,15 +11,16 @@ typedef struct maker {
     int64_t count, capacity;
 } maker;
 
-/* Of a/b/part.stl: part. */
-static void name_of(char *name, const char *file) {
+/* part.stl and _lower: part_lower.stl. */
+static void name_object(char *name, const char *file, const char *suffix) {
     const char *slash = strrchr(file, '/'), *base = slash ? slash + 1 : file;
-    const char *dot = strrchr(base, '.');
-    size_t length = dot && dot != base ? (size_t)(dot - base) : strlen(base);
-    if (length > ISO_OBJECT_NAME_SIZE - 24) /* room for what pieces add */
-        length = ISO_OBJECT_NAME_SIZE - 24;
-    memcpy(name, base, length);
-    name[length] = 0;
+    const char *dot = strrchr(base, '.'), *ending = dot && dot != base ? dot : "";
+    size_t length = strlen(base) - strlen(ending), room = ISO_OBJECT_NAME_SIZE - 1;
+    size_t added = strlen(suffix) + strlen(ending);
+    if (added > room / 2) /* no ending of a model's name */
+        ending = "", added = strlen(suffix);
+    snprintf(name, ISO_OBJECT_NAME_SIZE, "%.*s%s%s",
+             (int)(length + added > room ? room - added : length), base, suffix, ending);
 }
 
 static void find_box(iso_object *object) {
@@ -56,7 +57,7 @@ static iso_status add_object(maker *m, iso_mesh *mesh, int32_t count, const char
     memcpy(object.mesh, mesh, (size_t)count * sizeof *mesh);
     memset(mesh, 0, (size_t)count * sizeof *mesh);
     object.mesh_count = count;
-    snprintf(object.name, sizeof object.name, "%.*s%s", ISO_OBJECT_NAME_SIZE - 24, name, suffix);
+    name_object(object.name, name, suffix);
     find_box(&object);
     iso_vec3 by = {-(object.min.x + object.max.x) / 2, -(object.min.y + object.max.y) / 2,
                    m->options->float_above ? 0 : -object.min.z};
@@ -125,9 +126,7 @@ static iso_status add_cut(maker *m, iso_mesh *mesh, int32_t count, const char *n
     return status;
 }
 
-static iso_status make_group(maker *m, iso_mesh *mesh, int32_t count, const char *file) {
-    char name[ISO_OBJECT_NAME_SIZE];
-    name_of(name, file);
+static iso_status make_group(maker *m, iso_mesh *mesh, int32_t count, const char *name) {
     ISO_TRY(iso_meshes_transform(mesh, count, &m->options->transform));
     if (m->options->cut > 0)
         return add_cut(m, mesh, count, name);
