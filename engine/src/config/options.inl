@@ -387,11 +387,11 @@ ISO_OPTION(machine_max_acceleration_retracting, NUMBER, "1000", "mm/s2", 1, 1000
            "The firmware's acceleration of retractions, for the estimate of time.")
 ISO_OPTION(machine_max_feedrate_z, NUMBER, "12", "mm/s", 0.1, 1000, "Printer",
            "The firmware's highest speed of the Z axis, for the estimate of time.")
-ISO_OPTION(machine_max_feedrate_x, NUMBER, "500", "mm/s", 0.1, 10000, "Printer",
+ISO_OPTION(machine_max_feedrate_x, NUMBER, "500", "mm/s", 0.1, 100000, "Printer",
            "The firmware's highest speed of the X axis.")
-ISO_OPTION(machine_max_feedrate_y, NUMBER, "500", "mm/s", 0.1, 10000, "Printer",
+ISO_OPTION(machine_max_feedrate_y, NUMBER, "500", "mm/s", 0.1, 100000, "Printer",
            "The firmware's highest speed of the Y axis.")
-ISO_OPTION(machine_max_feedrate_e, NUMBER, "120", "mm/s", 0.1, 10000, "Printer",
+ISO_OPTION(machine_max_feedrate_e, NUMBER, "120", "mm/s", 0.1, 100000, "Printer",
            "The firmware's highest speed of the E axis.")
 ISO_OPTION(machine_max_acceleration_x, NUMBER, "9000", "mm/s2", 1, 1000000, "Printer",
            "The firmware's highest acceleration of the X axis.")
