@@ -1,6 +1,6 @@
 /* isoslice contours: the iso-slice alone, as a link file, as JSON or as a picture in SVG. */
 #include <isoslice/link.h>
-#include <isoslice/mesh.h>
+#include <isoslice/object.h>
 #include <isoslice/slice.h>
 
 #include <string.h>
@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/output.h"
+#include "config/settings_objects.h"
 #include "config/value.h"
 #include "contour_map.h"
 #include "verbs.h"
@@ -16,47 +17,84 @@
 typedef struct cut {
     int32_t count; /* of models */
     iso_mesh *mesh;
-    iso_slices *each; /* [count] */
+    iso_objects objects;
+    iso_instances instances;
+    iso_slices *each; /* [each_count] by instance, then mesh */
+    int32_t each_count;
     iso_levels levels;
     iso_slices slices; /* of all */
 } cut;
 
 static void cut_free(cut *part) {
-    for (int32_t i = 0; i < part->count; i++) {
-        iso_mesh_free(&part->mesh[i]);
+    iso_meshes_free(part->mesh, part->count);
+    iso_objects_free(&part->objects);
+    iso_instances_free(&part->instances);
+    for (int32_t i = 0; i < part->each_count; i++)
         iso_slices_free(&part->each[i]);
-    }
-    iso_release(part->mesh);
     iso_release(part->each);
     iso_levels_free(&part->levels);
     iso_slices_free(&part->slices);
 }
 
-static iso_status cut_new(cut *part, int32_t count) {
-    *part = (cut){0};
+/* ---- objects, as a print has them ---- */
+
+static iso_status load_objects(cut *part, const char *const *path, int32_t count,
+                               const iso_options *options) {
+    iso_object_options object = settings_of_objects(options);
+    iso_placing placing = settings_of_placing(options);
+    iso_planar_scratch *scratch;
     ISO_TRY(ISO_ALLOCATE(part->mesh, count));
-    ISO_TRY(ISO_ALLOCATE(part->each, count));
     memset(part->mesh, 0, (size_t)count * sizeof *part->mesh);
-    memset(part->each, 0, (size_t)count * sizeof *part->each);
     part->count = count;
-    return ISO_OK;
+    for (int32_t i = 0; i < count; i++)
+        ISO_TRY(iso_mesh_read(&part->mesh[i], path[i]));
+    ISO_TRY(iso_objects_make(&part->objects, part->mesh, path, count, &object));
+    ISO_TRY(iso_planar_scratch_new(&scratch));
+    iso_status status = iso_objects_place(&part->instances, &part->objects, &placing, scratch);
+    iso_planar_scratch_free(scratch);
+    return status;
 }
 
-/* At the place and the heights of a print. */
-static iso_status slice_models(cut *part, const char *const *path, const iso_options *options) {
-    double height[ISO_NUMBERS_MAX + 1], top = 0;
-    int32_t count = iso_options_heights(height, options);
-    for (int32_t i = 0; i < part->count; i++)
-        ISO_TRY(iso_mesh_read(&part->mesh[i], path[i]));
-    iso_meshes_place(part->mesh, part->count, iso_options_center(options));
-    for (int32_t i = 0; i < part->count; i++)
-        top = part->mesh[i].max.z > top ? part->mesh[i].max.z : top;
-    ISO_TRY(iso_levels_from_heights(&part->levels, height, count, top));
-    for (int32_t i = 0; i < part->count; i++) {
-        ISO_TRY(iso_slice_planar(&part->each[i], &part->mesh[i], &part->levels));
-        iso_mesh_free(&part->mesh[i]);
+/* All objects are cut at the same heights here: where layers adapt to the slope, at those that suit
+ * the highest one. */
+static iso_status find_levels(cut *part, const iso_options *options) {
+    const iso_object *highest = &part->objects.object[0];
+    for (int32_t i = 1; i < part->objects.count; i++)
+        if (part->objects.object[i].max.z > highest->max.z)
+            highest = &part->objects.object[i];
+    if (options->adaptive_layers) {
+        iso_adaptive_options adaptive = settings_of_adaptive(options);
+        return iso_levels_adaptive(&part->levels, highest->mesh, highest->mesh_count, &adaptive);
     }
-    return iso_slices_join(&part->slices, part->each, part->count);
+    double height[ISO_NUMBERS_MAX + 1];
+    int32_t count = iso_options_heights(height, options);
+    return iso_levels_from_heights(&part->levels, height, count, highest->max.z);
+}
+
+static void move_slices(iso_slices *slices, iso_point by) {
+    for (int64_t i = 0; i < slices->crossing_count; i++) {
+        slices->point[i].x += iso_mm(by.x);
+        slices->point[i].y += iso_mm(by.y);
+    }
+}
+
+static iso_status slice_models(cut *part) {
+    int64_t count = 0;
+    for (int32_t i = 0; i < part->instances.count; i++)
+        count += part->objects.object[part->instances.instance[i].object].mesh_count;
+    ISO_TRY(ISO_ALLOCATE(part->each, count));
+    for (int32_t i = 0; i < part->instances.count; i++) {
+        const iso_instance *instance = &part->instances.instance[i];
+        const iso_object *object = &part->objects.object[instance->object];
+        for (int32_t m = 0; m < object->mesh_count; m++) {
+            iso_slices *slices = &part->each[part->each_count];
+            ISO_TRY(iso_slice_planar(slices, &object->mesh[m], &part->levels));
+            part->each_count++;
+            move_slices(slices, instance->by);
+        }
+    }
+    iso_objects_free(&part->objects);
+    return iso_slices_join(&part->slices, part->each, part->each_count);
 }
 
 /* ---- formats ---- */
@@ -143,10 +181,13 @@ iso_status iso_verb_contours(const iso_arguments *arguments) {
         return iso_fail(ISO_USAGE, "%s: contours are written as .mlk, .json or .svg", path);
     ISO_TRY(iso_keep_files(arguments, path));
     ISO_TRY(warn(arguments));
-    cut part;
-    iso_status status = cut_new(&part, arguments->file_count);
+    cut part = {0};
+    iso_status status =
+        load_objects(&part, arguments->file, arguments->file_count, &arguments->options);
     if (status == ISO_OK)
-        status = slice_models(&part, arguments->file, &arguments->options);
+        status = find_levels(&part, &arguments->options);
+    if (status == ISO_OK)
+        status = slice_models(&part);
     if (status == ISO_OK)
         status = write_contours(path, &part);
     cut_free(&part);

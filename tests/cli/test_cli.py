@@ -341,6 +341,17 @@ class Cli(unittest.TestCase):
         self.assertEqual((3, 1), (paths[0].count("Z"), paths[-1].count("Z")))
         self.assertIn("fill-rule:nonzero", drawing.getElementsByTagName("style")[0].toxml())
 
+    def test_contours_of_objects(self):
+        """Turned, cut and copied as a print of them is."""
+        self.run_it("contours", "part.stl", "--rotate", "90", "--cut", "4", "--cut-keep", "upper",
+                    "--duplicate-grid", "2,1", "-o", "part.json")
+        levels = json.loads((self.at / "part.json").read_text())["levels"]
+        self.assertAlmostEqual(6, levels[-1]["top"], delta=0.16)
+        self.assertEqual([2] * len(levels), [len(level["contours"]) for level in levels])
+        for contour, x in zip(levels[5]["contours"], (100 - 10.5, 100 + 10.5)):
+            self.assertEqual([x - 7.5, x + 7.5], [f(p[0] for p in contour) for f in (min, max)])
+            self.assertEqual([90, 110], [f(p[1] for p in contour) for f in (min, max)])
+
     def test_info(self):
         text = self.run_it("info", "part.stl", "part.stl").stdout.decode()
         self.assertEqual(2, text.count("triangles  12\n"))
