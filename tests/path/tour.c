@@ -61,9 +61,11 @@ static void test_never_dearer_than_the_nearest(void) {
             iso_point from = random_point(900000);
             CHECK_OK(iso_tour_nearest(tour, stop, count, from, &scratch));
             check_visits_all(tour, count);
-            double before = iso_tour_seconds(tour, stop, count, from, &usual);
+            double before =
+                iso_tour_seconds(tour, stop, count, &(iso_tour_frame){.from = from}, &usual);
             CHECK_NEAR(plain_seconds(tour, stop, count, from), before, 1e-9 * before);
-            CHECK_OK(iso_tour_improve(tour, stop, count, from, &usual, &scratch));
+            CHECK_OK(iso_tour_improve(tour, stop, count, &(iso_tour_frame){.from = from}, &usual,
+                                      &scratch));
             check_visits_all(tour, count);
             double after = plain_seconds(tour, stop, count, from);
             CHECK(after <= before + 1e-9);
@@ -78,10 +80,27 @@ static void test_never_dearer_than_the_nearest(void) {
     iso_arena_free(&scratch);
 }
 
+static double with_end(const int32_t *tour, const iso_stop *stop, int32_t count,
+                       const iso_tour_frame *frame) {
+    iso_stop all[16];
+    int32_t longer[16];
+    double best = INFINITY;
+    if (frame->ends == 0)
+        return plain_seconds(tour, stop, count, frame->from);
+    memcpy(all, stop, (size_t)count * sizeof *all);
+    memcpy(longer, tour, (size_t)count * sizeof *longer);
+    longer[count] = 2 * count;
+    for (int32_t i = 0; i < frame->ends; i++) {
+        all[count] = (iso_stop){frame->end[i], frame->end[i]};
+        best = fmin(best, plain_seconds(longer, all, count + 1, frame->from));
+    }
+    return best;
+}
+
 static double cheapest(const iso_stop *stop, int32_t count, int32_t *tour, int32_t fixed,
-                       iso_point from) {
+                       const iso_tour_frame *frame) {
     if (fixed == count)
-        return plain_seconds(tour, stop, count, from);
+        return with_end(tour, stop, count, frame);
     double best = INFINITY;
     for (int32_t k = fixed; k < count; k++) {
         int32_t kept = tour[fixed];
@@ -89,7 +108,7 @@ static double cheapest(const iso_stop *stop, int32_t count, int32_t *tour, int32
         tour[k] = kept;
         for (int flip = 0; flip < 2; flip++) {
             tour[fixed] ^= 1;
-            best = fmin(best, cheapest(stop, count, tour, fixed + 1, from));
+            best = fmin(best, cheapest(stop, count, tour, fixed + 1, frame));
         }
         kept = tour[fixed];
         tour[fixed] = tour[k];
@@ -100,7 +119,7 @@ static double cheapest(const iso_stop *stop, int32_t count, int32_t *tour, int32
 
 /* Local moves get stuck now and then, but not far from the best of all tours. */
 static void test_against_all_tours(void) {
-    enum { COUNT = 6, TURNS = 40 };
+    enum { COUNT = 6, TURNS = 60 };
     iso_arena scratch = {0};
     double sum = 0, least = 0;
     for (int turn = 0; turn < TURNS; turn++) {
@@ -108,13 +127,17 @@ static void test_against_all_tours(void) {
         int32_t tour[COUNT], all[COUNT];
         seed = (uint64_t)(77 + turn);
         make_stops(stop, COUNT, 300000, turn % 2 ? 80000 : 1);
-        iso_point from = random_point(300000);
-        CHECK_OK(iso_tour_nearest(tour, stop, COUNT, from, &scratch));
-        CHECK_OK(iso_tour_improve(tour, stop, COUNT, from, &usual, &scratch));
+        iso_point end[3] = {random_point(300000), random_point(300000), random_point(300000)};
+        iso_tour_frame frame = {random_point(300000), end, turn % 4};
+        CHECK_OK(iso_tour_nearest(tour, stop, COUNT, frame.from, &scratch));
+        double before = with_end(tour, stop, COUNT, &frame);
+        CHECK_OK(iso_tour_improve(tour, stop, COUNT, &frame, &usual, &scratch));
         for (int i = 0; i < COUNT; i++)
             all[i] = 2 * i;
-        double best = cheapest(stop, COUNT, all, 0, from);
-        double found = plain_seconds(tour, stop, COUNT, from);
+        double best = cheapest(stop, COUNT, all, 0, &frame);
+        double found = with_end(tour, stop, COUNT, &frame);
+        CHECK_NEAR(found, iso_tour_seconds(tour, stop, COUNT, &frame, &usual), 1e-9);
+        CHECK(found <= before + 1e-9);
         CHECK(found >= best - 1e-9);
         CHECK(found <= 1.25 * best);
         sum += found;
@@ -132,13 +155,13 @@ static void test_moves(void) {
                          {{100000, 0}, {100000, 0}},
                          {{0, 100000}, {0, 100000}}};
     int32_t tour[5] = {0, 2, 4, 6};
-    CHECK_OK(iso_tour_improve(tour, cross, 4, (iso_point){0, 0}, &usual, &scratch));
+    CHECK_OK(iso_tour_improve(tour, cross, 4, &(iso_tour_frame){0}, &usual, &scratch));
     CHECK_NEAR(3 * (2 * sqrt(0.01) + 0.18), plain_seconds(tour, cross, 4, (iso_point){0, 0}), 1e-9);
     iso_stop row[5];
     for (int i = 0; i < 5; i++)
         row[i] = (iso_stop){{30000 * i, 0}, {30000 * i + 10000, 0}};
     int32_t late[5] = {0, 2, 6, 8, 5};
-    CHECK_OK(iso_tour_improve(late, row, 5, (iso_point){0, 0}, &usual, &scratch));
+    CHECK_OK(iso_tour_improve(late, row, 5, &(iso_tour_frame){0}, &usual, &scratch));
     for (int i = 0; i < 5; i++)
         CHECK_EQUAL(2 * i, late[i]);
     iso_arena_free(&scratch);
@@ -155,7 +178,7 @@ static void test_crowds(void) {
         for (int32_t i = 0; i < COUNT; i++)
             stop[i].a = stop[i].b = (iso_point){turn ? random_below(1 << 24) : 5, 5};
         CHECK_OK(iso_tour_nearest(tour, stop, COUNT, (iso_point){0, 0}, &scratch));
-        CHECK_OK(iso_tour_improve(tour, stop, COUNT, (iso_point){0, 0}, &usual, &scratch));
+        CHECK_OK(iso_tour_improve(tour, stop, COUNT, &(iso_tour_frame){0}, &usual, &scratch));
         check_visits_all(tour, COUNT);
     }
     iso_arena_free(&scratch);
@@ -171,7 +194,8 @@ static void test_without_memory(void) {
         iso_fail_allocation_after(n);
         iso_status status = iso_tour_nearest(tour, stop, 50, stop[0].a, &scratch);
         if (status == ISO_OK)
-            status = iso_tour_improve(tour, stop, 50, stop[0].a, &usual, &scratch);
+            status = iso_tour_improve(tour, stop, 50, &(iso_tour_frame){.from = stop[0].a}, &usual,
+                                      &scratch);
         iso_fail_allocation_after(-1);
         iso_arena_free(&scratch);
         if (status == ISO_OK)

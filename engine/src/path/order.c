@@ -258,7 +258,8 @@ iso_status ordering_tour(iso_ordering *o, iso_run r) {
         stop[k] = (iso_stop){vertex[0].at, vertex[last].at};
     }
     ISO_TRY(iso_tour_nearest(tour, stop, count, o->position, o->scratch));
-    ISO_TRY(iso_tour_improve(tour, stop, count, o->position, &o->cost, o->scratch));
+    iso_tour_frame frame = {o->position, o->end, o->ends};
+    ISO_TRY(iso_tour_improve(tour, stop, count, &frame, &o->cost, o->scratch));
     for (int32_t n = 0; n < count; n++) {
         int32_t k = r.begin + (tour[n] >> 1);
         ordering_emit(o, k, tour[n] & 1 ? ordering_path(o, k)->count - 1 : 0);
@@ -315,6 +316,14 @@ static iso_run entries(const iso_ordering *o, iso_run group) {
     return (iso_run){group.begin, all ? end : end_of_rank(o, group.begin, end)};
 }
 
+/* Seams that are decided are where the nozzle goes next, to those of other groups or of the layer
+ * above. */
+static void add_ends(iso_ordering *o, iso_run group) {
+    for (int32_t k = group.begin; k < group.end && o->ends < ORDERING_ENDS; k++)
+        if (o->placed[o->key[k].path] && ordering_path(o, k)->role == ISO_ROLE_EXTERNAL_PERIMETER)
+            o->end[o->ends++] = o->seam[o->key[k].path].at;
+}
+
 static iso_status order_few_groups(iso_ordering *o, const iso_run *group, int32_t groups) {
     unsigned done = 0;
     for (int32_t n = 0; n < groups; n++) {
@@ -331,6 +340,10 @@ static iso_status order_few_groups(iso_ordering *o, const iso_run *group, int32_
                 chosen = g;
         }
         done |= 1u << chosen;
+        o->ends = 0;
+        for (int32_t g = 0; g < groups; g++)
+            if (!(done >> g & 1) || n + 1 == groups)
+                add_ends(o, group[g]);
         ISO_TRY(order_group(o, group[chosen]));
     }
     return ISO_OK;

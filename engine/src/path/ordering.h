@@ -20,6 +20,8 @@ typedef struct iso_order_key {
     int32_t object, group, phase, rank, path;
 } iso_order_key;
 
+enum { ORDERING_ENDS = 16 };
+
 /* A run of keys; one level of the hierarchy group > phase > rank > path. */
 typedef struct iso_run {
     int32_t begin, end;
@@ -31,7 +33,9 @@ typedef struct iso_ordering {
     iso_arena *scratch;
     const iso_order_options *options;
     iso_seams *seams;
-    iso_travel_cost cost; /* of travels within a group */
+    iso_travel_cost cost;         /* of travels within a group */
+    iso_point end[ORDERING_ENDS]; /* where the fill of a group had best end, if that matters */
+    int32_t ends;
     iso_point position;
     iso_order_key *key;
     int32_t count;

@@ -27,14 +27,30 @@ static iso_point exit_of(const iso_stop *stop, int32_t visit) {
     return visit & 1 ? stop[visit >> 1].a : stop[visit >> 1].b;
 }
 
-double iso_tour_seconds(const int32_t *tour, const iso_stop *stop, int32_t count, iso_point from,
-                        const iso_travel_cost *cost) {
+/* From there to the nearest of the places where the tour would like to end. */
+static double seconds_to_end(const iso_tour_frame *frame, const iso_travel_cost *cost,
+                             iso_point from) {
+    int64_t closest = INT64_MAX;
+    int32_t best = 0;
+    for (int32_t i = 0; i < frame->ends; i++) {
+        int64_t d = iso_distance_squared(from, frame->end[i]);
+        if (d < closest) {
+            closest = d;
+            best = i;
+        }
+    }
+    return frame->ends > 0 ? iso_travel_seconds(cost, from, frame->end[best]) : 0;
+}
+
+double iso_tour_seconds(const int32_t *tour, const iso_stop *stop, int32_t count,
+                        const iso_tour_frame *frame, const iso_travel_cost *cost) {
+    iso_point from = frame->from;
     double sum = 0;
     for (int32_t k = 0; k < count; k++) {
         sum += iso_travel_seconds(cost, from, entry_of(stop, tour[k]));
         from = exit_of(stop, tour[k]);
     }
-    return sum;
+    return sum + seconds_to_end(frame, cost, from);
 }
 
 static void visit_few(int32_t *tour, const iso_stop *stop, int32_t count, iso_point from) {
@@ -80,7 +96,7 @@ iso_status iso_tour_nearest(int32_t *tour, const iso_stop *stop, int32_t count, 
 typedef struct improving {
     const iso_stop *stop;
     const iso_travel_cost *cost;
-    iso_point from;
+    const iso_tour_frame *frame;
     int32_t count;
     int32_t *tour, *place; /* place[stop]: where in the tour it is */
     int32_t *neighbour;    /* [2 count][NEIGHBOURS] ends by name, the nearest first; -1: no more */
@@ -189,16 +205,21 @@ static double cost_between(const improving *t, iso_point a, iso_point b) {
 
 /* Where the nozzle comes from before place i. */
 static iso_point left_at(const improving *t, int32_t i) {
-    return i == 0 ? t->from : exit_of(t->stop, t->tour[i - 1]);
+    return i == 0 ? t->frame->from : exit_of(t->stop, t->tour[i - 1]);
 }
 
 static iso_point entered_at(const improving *t, int32_t i) {
     return entry_of(t->stop, t->tour[i]);
 }
 
-/* Of the travel to place i; nothing follows the last. */
+/* From p to place i; behind the last one to where the tour would like to end. */
+static double cost_from(const improving *t, iso_point p, int32_t i) {
+    return i == t->count ? seconds_to_end(t->frame, t->cost, p)
+                         : cost_between(t, p, entered_at(t, i));
+}
+
 static double cost_to(const improving *t, int32_t i) {
-    return i == t->count ? 0 : cost_between(t, left_at(t, i), entered_at(t, i));
+    return cost_from(t, left_at(t, i), i);
 }
 
 static void reverse(improving *t, int32_t i, int32_t j) {
@@ -222,9 +243,8 @@ static int try_reversal(improving *t, int32_t i, int32_t j) {
     if (i > j)
         return 0;
     double before = cost_to(t, i) + cost_to(t, j + 1);
-    double after = cost_between(t, left_at(t, i), exit_of(t->stop, t->tour[j]));
-    if (j + 1 < t->count)
-        after += cost_between(t, entered_at(t, i), entered_at(t, j + 1));
+    double after = cost_between(t, left_at(t, i), exit_of(t->stop, t->tour[j])) +
+                   cost_from(t, entered_at(t, i), j + 1);
     if (after >= before - LEAST_GAIN)
         return 0;
     reverse(t, i, j);
@@ -238,11 +258,10 @@ static int try_move(improving *t, int32_t i, int32_t j, int32_t k, int flip) {
         return 0;
     iso_point in = entered_at(t, i), out = exit_of(t->stop, t->tour[j]);
     double before = cost_to(t, i) + cost_to(t, j + 1) + cost_to(t, k);
-    double after = cost_between(t, left_at(t, k), flip ? out : in);
-    if (j + 1 < t->count)
-        after += cost_between(t, left_at(t, i), entered_at(t, j + 1));
-    if (k < t->count)
-        after += cost_between(t, flip ? in : out, entered_at(t, k));
+    double after =
+        cost_between(t, left_at(t, k), flip ? out : in) + cost_from(t, flip ? in : out, k);
+    if (k != j + 1)
+        after += cost_from(t, left_at(t, i), j + 1);
     if (after >= before - LEAST_GAIN)
         return 0;
     int32_t n = j - i + 1;
@@ -294,9 +313,21 @@ static int improve_at(improving *t, int32_t i) {
     return 0;
 }
 
-iso_status iso_tour_improve(int32_t *tour, const iso_stop *stop, int32_t count, iso_point from,
-                            const iso_travel_cost *cost, iso_arena *scratch) {
-    improving t = {.stop = stop, .cost = cost, .from = from, .count = count, .tour = tour};
+/* Moves that no list of neighbours leads to: another stop last, or the last ones turned. */
+static int improve_end(improving *t) {
+    int found = 0;
+    for (int32_t i = t->count; i-- > 0 && t->steps > 0 && t->frame->ends > 0;) {
+        t->steps--;
+        found |= try_reversal(t, i, t->count - 1) || try_move(t, i, i, t->count, 0) ||
+                 try_move(t, i, i, t->count, 1);
+    }
+    return found | try_reversal(t, t->count - 1, t->count - 1);
+}
+
+iso_status iso_tour_improve(int32_t *tour, const iso_stop *stop, int32_t count,
+                            const iso_tour_frame *frame, const iso_travel_cost *cost,
+                            iso_arena *scratch) {
+    improving t = {.stop = stop, .cost = cost, .frame = frame, .count = count, .tour = tour};
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     if (count < 2) {
         if (count == 1)
@@ -309,7 +340,7 @@ iso_status iso_tour_improve(int32_t *tour, const iso_stop *stop, int32_t count, 
     for (int32_t i = 0; i < count; i++)
         t.place[tour[i] >> 1] = i;
     for (int found = 1; found && t.steps > 0;) {
-        found = try_reversal(&t, count - 1, count - 1);
+        found = improve_end(&t);
         for (int32_t i = 0; i < count && t.steps > 0; i++)
             while (t.steps > 0 && improve_at(&t, i))
                 found = 1;

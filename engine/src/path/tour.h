@@ -22,6 +22,13 @@ typedef struct iso_stop {
 
 /* tour[k] = 2 * stop + 1 if it is entered at b, else 2 * stop; the k-th to be visited. */
 
+/* Where a tour comes from, and where it would like to end: near one of some places, or anywhere. */
+typedef struct iso_tour_frame {
+    iso_point from;
+    const iso_point *end; /* [ends] */
+    int32_t ends;
+} iso_tour_frame;
+
 /* The nearest end of those left is next. */
 iso_status iso_tour_nearest(int32_t *tour, const iso_stop *stop, int32_t count, iso_point from,
                             iso_arena *scratch) ISO_MUST_CHECK;
@@ -29,10 +36,11 @@ iso_status iso_tour_nearest(int32_t *tour, const iso_stop *stop, int32_t count, 
 /* Make a tour cheaper by 2-opt and Or-opt moves between ends that are near each other (Bentley,
  * "Fast algorithms for geometric traveling salesman problems", 1992), until none is left or about
  * 100 count + 10000 steps are done. Never makes it dearer. */
-iso_status iso_tour_improve(int32_t *tour, const iso_stop *stop, int32_t count, iso_point from,
-                            const iso_travel_cost *cost, iso_arena *scratch) ISO_MUST_CHECK;
+iso_status iso_tour_improve(int32_t *tour, const iso_stop *stop, int32_t count,
+                            const iso_tour_frame *frame, const iso_travel_cost *cost,
+                            iso_arena *scratch) ISO_MUST_CHECK;
 
-double iso_tour_seconds(const int32_t *tour, const iso_stop *stop, int32_t count, iso_point from,
-                        const iso_travel_cost *cost);
+double iso_tour_seconds(const int32_t *tour, const iso_stop *stop, int32_t count,
+                        const iso_tour_frame *frame, const iso_travel_cost *cost);
 
 #endif

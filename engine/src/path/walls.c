@@ -238,7 +238,8 @@ static iso_status print_placed(walls *w, const int32_t *root, int32_t roots) {
             path->closed ? (iso_stop){seam, seam} : (iso_stop){v[0].at, v[path->count - 1].at};
     }
     ISO_TRY(iso_tour_nearest(tour, stop, roots, w->o->position, w->o->scratch));
-    ISO_TRY(iso_tour_improve(tour, stop, roots, w->o->position, &w->o->cost, w->o->scratch));
+    iso_tour_frame frame = {.from = w->o->position};
+    ISO_TRY(iso_tour_improve(tour, stop, roots, &frame, &w->o->cost, w->o->scratch));
     for (int32_t k = 0; k < roots; k++) {
         int32_t i = root[tour[k] >> 1];
         ISO_TRY(print_root(w, i, tour[k] & 1 ? wall(w, i)->count - 1 : 0));
