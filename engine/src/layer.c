@@ -43,6 +43,8 @@ void layer_free(iso_layer *layer) {
     iso_region_free(&layer->region);
     iso_region_free(&layer->area);
     iso_shell_free(&layer->shell);
+    iso_region_free(&layer->together);
+    iso_region_free(&layer->alone);
     iso_paths_free(&layer->paths);
     iso_release(layer->group);
 }
@@ -230,7 +232,10 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
     ISO_TRY(fill_region(&filling, &shell->top, &s->top));
     ISO_TRY(fill_region(&filling, &shell->solid, &s->solid));
     if (s->has_sparse)
-        ISO_TRY(fill_region(&filling, &shell->sparse, &s->sparse));
+        ISO_TRY(fill_region(&filling, layer->combined ? &layer->alone : &shell->sparse,
+                            &s->sparse));
+    if (layer->combined)
+        ISO_TRY(fill_region(&filling, &layer->together, &s->together));
     if (s->irons > 0)
         ISO_TRY(fill_region(&filling, &shell->top, &s->ironing));
     return s->irons > 1 ? fill_region(&filling, &shell->solid, &s->ironing) : ISO_OK;
@@ -273,7 +278,8 @@ iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath
     double begun = iso_stage_clock();
     if (beneath)
         ISO_TRY(lie_on(layer, hand, beneath));
-    bool shelled = shell->top.count + shell->solid.count + shell->bridge.count + shell->lid.count;
+    bool shelled = shell->top.count + shell->solid.count + shell->bridge.count + shell->lid.count +
+                   layer->combined;
     double ready = iso_stage_clock();
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
     iso_filling all = {.layer = layer, .hand = hand};

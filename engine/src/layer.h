@@ -35,7 +35,9 @@ typedef struct iso_layer {
     iso_region area; /* within the walls, island by island */
     int32_t *group;  /* [area.count] island of `region` that each contour lies in */
     int64_t group_capacity;
-    iso_shell shell; /* the area, split */
+    iso_shell shell;            /* the area, split */
+    int32_t combined;           /* nonzero: its sparse part is split once more (combine.h) */
+    iso_region together, alone; /* drawn for several layers, and for this one only */
     iso_paths paths;
     double square_mm; /* of the region */
     double seconds[ISO_STAGE_COUNT];

@@ -106,13 +106,19 @@ iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *
     ISO_TRY(make_levels(stack, object));
     ISO_TRY(slice_meshes(stack, object));
     ISO_TRY(verify_volume(stack, object));
-    return window_new(&stack->window, &stack->levels, &shells, stack->block, 0);
+    if (combine_is_asked_for(options)) {
+        ISO_TRY(ISO_ALLOCATE(stack->combination, stack->levels.count));
+        combine_plan(stack->combination, &stack->levels, options);
+        stack->around = options->infill_every_layers - 1;
+    }
+    return window_new(&stack->window, &stack->levels, &shells, stack->block, stack->around);
 }
 
 void stack_free(iso_stack *stack) {
     for (int32_t i = 0; stack->slices && i < stack->model_count; i++)
         iso_slices_free(&stack->slices[i]);
     iso_release(stack->slices);
+    iso_release(stack->combination);
     window_free(&stack->window);
     iso_levels_free(&stack->levels);
 }
@@ -125,6 +131,13 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
     iso_layer *layer = window_layer(&stack->window, index);
     settings_of_layer(&layer->settings, stack->options, index, stack->levels.height[index]);
     layer->settings.sparse.z = iso_units(stack->levels.cut[index]);
+    if (stack->combination) {
+        const iso_combination *of = &stack->combination[index];
+        int32_t turn = of->last / (of->last - of->first + 1);
+        settings_of_combination(&layer->settings, stack->options, turn, of->height);
+        layer->settings.together.z =
+            iso_units((stack->levels.cut[of->first] + stack->levels.cut[of->last]) / 2);
+    }
     if (stack->options->ironing_type == ISO_IRONING_TOPMOST && index + 1 < stack->levels.count)
         layer->settings.irons = 0;
     return layer_outline(layer, &stack->crew->hand[worker], stack->slices, stack->model_count,
@@ -148,7 +161,10 @@ static iso_status fill_task(void *payload, int64_t number, int worker) {
     iso_stack *stack = payload;
     int32_t index = stack->begin + (int32_t)number;
     const iso_layer *beneath = index > 0 ? window_layer(&stack->window, index - 1) : NULL;
-    return layer_fill(window_layer(&stack->window, index), &stack->crew->hand[worker], beneath);
+    iso_hand *hand = &stack->crew->hand[worker];
+    if (stack->combination)
+        ISO_TRY(combine_layer(&stack->window, index, &stack->combination[index], hand));
+    return layer_fill(window_layer(&stack->window, index), hand, beneath);
 }
 
 static int32_t least(int32_t a, int32_t b) {
@@ -185,7 +201,7 @@ static iso_status split_up_to(iso_stack *stack, int32_t end) {
 iso_status stack_layer(iso_layer **layer, iso_stack *stack, int32_t index) {
     if (index == stack->filled) {
         int32_t count = stack->levels.count, end = least(stack->filled + stack->block, count);
-        ISO_TRY(split_up_to(stack, end));
+        ISO_TRY(split_up_to(stack, least(end + stack->around, count)));
         stack->begin = stack->filled;
         ISO_TRY(iso_parallel_for(stack->crew->pool, end - stack->filled, fill_task, stack));
         stack->filled = end;

@@ -8,6 +8,7 @@
 #include <isoslice/object.h>
 
 #include "base/parallel.h"
+#include "combine.h"
 #include "window.h"
 
 /* The threads, and what each of them needs for itself. */
@@ -31,8 +32,10 @@ typedef struct iso_stack {
     double sliced_volume; /* mm^3 of their slices */
     double projected;     /* mm^2 of all triangles seen from above */
     iso_window window;
-    int32_t block;        /* layers filled in one go */
-    int32_t filled;       /* layers that are done, from the bed up */
+    iso_combination *combination; /* [levels.count] whose sparse fill is drawn at once; or NULL */
+    int32_t block;                /* layers filled in one go */
+    int32_t around;               /* layers whose shells each of them looks at, above and below */
+    int32_t filled;               /* layers that are done, from the bed up */
     int32_t begin, level; /* of the parallel loop under way: first layer, level of its runs */
     int64_t mesh_bytes, slice_bytes;
 } iso_stack;

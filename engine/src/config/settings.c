@@ -211,6 +211,18 @@ void settings_of_layer(iso_layer_settings *s, const iso_options *options, int32_
     set_bridges(s, options, first, height);
 }
 
+void settings_of_combination(iso_layer_settings *s, const iso_options *options, int32_t turn,
+                             double height) {
+    int32_t high = iso_units(height), width = s->sparse.width > high ? s->sparse.width : high;
+    iso_fill_options *fill = &s->together;
+    *fill = iso_fill_defaults(iso_bead_of(width, high), options->fill_density / 100);
+    fill->angle = options->fill_angle;
+    fill->like = s->sparse.like;
+    fill->anchor = s->sparse.anchor;
+    fill->link_max = s->sparse.link_max;
+    set_pattern(fill, options->fill_pattern, turn);
+}
+
 /* s to move the filament by `length`, from standing to standing. */
 static double filament_seconds(double length, double speed, double acceleration) {
     double ramps = speed * speed / acceleration;

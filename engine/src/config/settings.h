@@ -29,13 +29,18 @@ typedef struct iso_layer_settings {
     int32_t irons;                 /* tops are passed over again; 2: all solid areas are */
     int32_t ironing_inset;         /* units */
     iso_fill_options ironing;
-    int32_t has_sparse;      /* else the area within the shells stays empty */
-    iso_fill_options sparse; /* .z is not set */
+    int32_t has_sparse;        /* else the area within the shells stays empty */
+    iso_fill_options sparse;   /* .z is not set */
+    iso_fill_options together; /* of several layers at once; by settings_of_combination alone */
 } iso_layer_settings;
 
 /* `index` counts from 0; `height` in mm. */
 void settings_of_layer(iso_layer_settings *settings, const iso_options *options, int32_t index,
                        double height);
+
+/* Then, if sparse fill of layers is combined: `height` of all in mm, `turn` counts such groups. */
+void settings_of_combination(iso_layer_settings *settings, const iso_options *options, int32_t turn,
+                             double height);
 
 /* How much of the print is solid around its tops and bottoms. At full density only what is seen
  * from above is told apart, and what is over air. */
