@@ -229,11 +229,11 @@ static void test_every_allocation_may_fail(void) {
     const char *text = "{global kept = \"a\"; kept = kept + printer_notes}"
                        "{local x = repeat(2000, \"b\"); x[1999] = kept; x[1999]}";
     CHECK(iso_foreign_set(&options.foreign, "printer_notes", "some\\nnotes"));
-    (void)iso_fail_allocation_after(-1);
+    (void)iso_fail_allocation_after(INT64_MAX); /* counts, and lets all be */
     CHECK_OK(expand_case(text));
     iso_macro_globals_free(&globals);
     int64_t count = iso_fail_allocation_after(-1);
-    CHECK(count >= 2);
+    CHECK(count >= 3);
     for (int64_t n = 0; n < count; n++) {
         (void)iso_fail_allocation_after(n);
         iso_status status = expand_case(text);
@@ -250,7 +250,7 @@ static void test_thousands_of_layers_take_no_time(void) {
         "{digits(layer_z,1,2)} of {max_layer_z}{elsif printer_notes=~/.*MODEL_MINI.*/}"
         "G1 Z{z_offset+min(layer_z+70, max_print_height-10)}{else}{first_layer_temperature[0]}"
         "{endif}\n";
-    (void)iso_fail_allocation_after(-1);
+    (void)iso_fail_allocation_after(INT64_MAX);
     for (int i = 0; i < 5000; i++)
         CHECK_OK(expand_case(layer));
     CHECK_EQUAL(0, iso_fail_allocation_after(-1)); /* nothing is allocated for them */

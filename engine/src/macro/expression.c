@@ -182,7 +182,7 @@ static iso_status name_value(iso_datum *value, iso_macro_run *run) {
     memcpy(key, name.begin, (size_t)name.length);
     key[name.length] = 0;
     if (run->skip == 0) {
-        ISO_TRY(macro_find(value, run, key, name.begin));
+        ISO_TRY(macro_find(value, run, key));
         if (value->kind == ISO_DATUM_NONE)
             return macro_unknown(run, key, name.begin);
     }

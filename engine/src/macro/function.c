@@ -257,25 +257,35 @@ static iso_status read_table(iso_datum *result, call *of) {
 
 static const struct {
     const char *name;
+    int32_t length;
     int least, most; /* arguments; most < 0: it reads them itself */
     bool lists;      /* it takes lists, too */
     function_body *body;
 } functions[] = {
-    {"min", 2, ARGUMENTS, false, call_min}, {"max", 2, ARGUMENTS, false, call_max},
-    {"abs", 1, 1, false, call_abs},         {"int", 1, 1, false, call_int},
-    {"round", 1, 1, false, call_round},     {"digits", 2, 3, false, call_digits},
-    {"zdigits", 2, 3, false, call_zdigits}, {"random", 2, 2, false, call_random},
-    {"is_nil", 1, 1, true, call_is_nil},    {"size", 1, 1, true, call_size},
-    {"empty", 1, 1, true, call_empty},      {"repeat", 2, 2, true, call_repeat},
-    {"one_of", 0, -1, true, read_one_of},   {"interpolate_table", 0, -1, true, read_table},
+#define FUNCTION(name, least, most, lists, body)                                                   \
+    { #name, sizeof #name - 1, least, most, lists, body }
+    FUNCTION(min, 2, ARGUMENTS, false, call_min),
+    FUNCTION(max, 2, ARGUMENTS, false, call_max),
+    FUNCTION(abs, 1, 1, false, call_abs),
+    FUNCTION(int, 1, 1, false, call_int),
+    FUNCTION(round, 1, 1, false, call_round),
+    FUNCTION(digits, 2, 3, false, call_digits),
+    FUNCTION(zdigits, 2, 3, false, call_zdigits),
+    FUNCTION(random, 2, 2, false, call_random),
+    FUNCTION(is_nil, 1, 1, true, call_is_nil),
+    FUNCTION(size, 1, 1, true, call_size),
+    FUNCTION(empty, 1, 1, true, call_empty),
+    FUNCTION(repeat, 2, 2, true, call_repeat),
+    FUNCTION(one_of, 0, -1, true, read_one_of),
+    FUNCTION(interpolate_table, 0, -1, true, read_table),
+#undef FUNCTION
 };
 
 enum { FUNCTION_COUNT = sizeof functions / sizeof *functions };
 
 int macro_function(const iso_token *token) {
-    for (int i = 0; token->kind == TOKEN_NAME && i < FUNCTION_COUNT; i++)
-        if ((size_t)token->length == strlen(functions[i].name) &&
-            memcmp(token->begin, functions[i].name, (size_t)token->length) == 0)
+    for (int i = 0; i < FUNCTION_COUNT; i++)
+        if (macro_token_is(token, functions[i].name, functions[i].length))
             return i;
     return -1;
 }

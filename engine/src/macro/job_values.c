@@ -239,7 +239,7 @@ static iso_status of_printer(iso_datum *value, iso_macro_run *run, int which) {
         *value = iso_datum_text(ISO_VERSION, sizeof ISO_VERSION - 1);
         return ISO_OK;
     case FILAMENT:
-        ISO_TRY(macro_find(value, run, "filament_type", run->token.begin));
+        ISO_TRY(macro_find(value, run, "filament_type"));
         if (value->kind == ISO_DATUM_LIST && value->count > 0)
             *value = value->item[0];
         return ISO_OK;

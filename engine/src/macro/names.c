@@ -7,11 +7,27 @@
 
 /* ---- options ---- */
 
-static const size_t offset_of[] = {
-#define ISO_OPTION(key, kind, initial, unit, min, max, category, help) offsetof(iso_options, key),
+static const struct {
+    size_t offset;
+    int32_t length;
+    const char *key;
+} fields[] = {
+#define ISO_OPTION(key, kind, initial, unit, min, max, category, help)                             \
+    {offsetof(iso_options, key), (int32_t)sizeof #key - 1, #key},
 #include "config/options.inl"
 #undef ISO_OPTION
 };
+
+enum { FIELD_COUNT = sizeof fields / sizeof *fields };
+
+/* iso_option_find for those that come at every layer: most keys differ in their length. */
+static int32_t find_option(const char *key) {
+    int32_t length = (int32_t)strlen(key);
+    for (int32_t i = 0; i < FIELD_COUNT; i++)
+        if (fields[i].length == length && memcmp(fields[i].key, key, (size_t)length) == 0)
+            return i;
+    return -1;
+}
 
 static iso_status numbers_value(iso_datum *value, iso_macro_run *run, const iso_numbers *numbers) {
     void *room;
@@ -56,10 +72,10 @@ static iso_status word_value(iso_datum *value, iso_macro_run *run, const void *f
 }
 
 iso_status names_of_options(iso_datum *value, iso_macro_run *run, const char *key) {
-    int32_t option = run->scope->options ? iso_option_find(key) : -1;
+    int32_t option = run->scope->options ? find_option(key) : -1;
     if (option < 0)
         return ISO_OK;
-    const void *field = (const char *)run->scope->options + offset_of[option];
+    const void *field = (const char *)run->scope->options + fields[option].offset;
     iso_option_kind kind = iso_option_at(option)->kind;
     switch (kind) {
     case ISO_VALUE_BOOL:
@@ -121,7 +137,7 @@ static bool ends_with(const char *text, const char *end) {
 static iso_status number_named(double *number, iso_macro_run *run, const char *key,
                                const char *at) {
     iso_datum value;
-    ISO_TRY(macro_find(&value, run, key, at));
+    ISO_TRY(macro_find(&value, run, key));
     ISO_TRY(macro_single(&value, run, at));
     ISO_TRY(macro_absolute(&value, run, key, at));
     if (!iso_datum_is_numeric(&value))
@@ -137,7 +153,7 @@ static iso_status absolute_width(iso_datum *value, iso_macro_run *run, const cha
     double number = 0;
     iso_datum width = *value;
     if (iso_datum_as_number(&width) == 0 && strcmp(key, "extrusion_width") != 0) {
-        ISO_TRY(macro_find(&width, run, "extrusion_width", at));
+        ISO_TRY(macro_find(&width, run, "extrusion_width"));
         if (!iso_datum_is_numeric(&width))
             return macro_fail(run, at, "extrusion_width is no number");
     }
@@ -212,7 +228,7 @@ static iso_status find_given(iso_datum *value, iso_macro_run *run, const char *k
     return value->kind == ISO_DATUM_NONE ? names_of_files(value, run, key) : ISO_OK;
 }
 
-iso_status macro_find(iso_datum *value, iso_macro_run *run, const char *key, const char *at) {
+iso_status macro_find(iso_datum *value, iso_macro_run *run, const char *key) {
     const iso_macro_variable *variable = macro_variable(run, key);
     *value = (iso_datum){.kind = ISO_DATUM_NONE};
     if (variable) {

@@ -155,21 +155,14 @@ bool macro_is_sign(const iso_macro_run *run, int32_t sign) {
     return run->token.kind == TOKEN_SIGN && run->token.sign == sign;
 }
 
-static bool is_word(const iso_token *token, const char *word) {
-    size_t length = strlen(word);
-    return token->kind == TOKEN_NAME && (size_t)token->length == length &&
-           memcmp(token->begin, word, length) == 0;
-}
-
-bool macro_is_word(const iso_macro_run *run, const char *word) {
-    return is_word(&run->token, word);
-}
-
 bool macro_is_keyword(const iso_token *token) {
-    static const char *const words[] = {"if", "then", "elsif", "else",  "endif", "and",
-                                        "or", "not",  "true",  "false", "local", "global"};
+    static const struct {
+        const char *word;
+        int32_t length;
+    } words[] = {{"if", 2}, {"then", 4}, {"elsif", 5}, {"else", 4},  {"endif", 5}, {"and", 3},
+                 {"or", 2}, {"not", 3},  {"true", 4},  {"false", 5}, {"local", 5}, {"global", 6}};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (is_word(token, words[i]))
+        if (macro_token_is(token, words[i].word, words[i].length))
             return true;
     return false;
 }

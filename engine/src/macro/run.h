@@ -60,6 +60,14 @@ typedef struct iso_macro_run {
     _Alignas(16) char scratch[MACRO_SCRATCH_SIZE];
 } iso_macro_run;
 
+static inline bool macro_token_is(const iso_token *token, const char *word, int32_t length) {
+    return token->kind == TOKEN_NAME && token->length == length &&
+           memcmp(token->begin, word, (size_t)length) == 0;
+}
+
+/* Is the token that word, a literal? */
+#define macro_is_word(run, word) macro_token_is(&(run)->token, word, (int32_t)sizeof(word "") - 1)
+
 /* ---- messages and memory ---- */
 
 /* "start_gcode, line 3, column 7: ..." */
@@ -79,7 +87,6 @@ iso_status macro_text_of(iso_datum *text, iso_macro_run *run,
 
 iso_status macro_next(iso_macro_run *run) ISO_MUST_CHECK; /* read the next token */
 bool macro_is_sign(const iso_macro_run *run, int32_t sign);
-bool macro_is_word(const iso_macro_run *run, const char *word);
 bool macro_is_keyword(const iso_token *token);
 iso_status macro_take(iso_macro_run *run, int32_t sign, const char *what) ISO_MUST_CHECK;
 /* A /regular expression/ right behind the token; it is compiled and passed over, and the token
@@ -88,9 +95,8 @@ iso_status macro_regex(iso_macro_run *run) ISO_MUST_CHECK;
 
 /* ---- names ---- */
 
-/* What a key stands for, a variable or not; kind NONE: nothing. `at` is where it stands. */
-iso_status macro_find(iso_datum *value, iso_macro_run *run, const char *key,
-                      const char *at) ISO_MUST_CHECK;
+/* What a key stands for, a variable or not; kind NONE: nothing. */
+iso_status macro_find(iso_datum *value, iso_macro_run *run, const char *key) ISO_MUST_CHECK;
 /* A number in percent of another key's becomes what it stands for. */
 iso_status macro_absolute(iso_datum *value, iso_macro_run *run, const char *key,
                           const char *at) ISO_MUST_CHECK;

@@ -43,14 +43,14 @@ static int64_t cut_index(char *key) {
 
 static iso_status put_key(iso_macro_run *run, char key[MACRO_KEY_SIZE], const char *at) {
     iso_datum value;
-    ISO_TRY(macro_find(&value, run, key, at));
+    ISO_TRY(macro_find(&value, run, key));
     if (value.kind != ISO_DATUM_NONE)
         return put_value(run, &value, 0, at);
     char whole[MACRO_KEY_SIZE];
     strcpy(whole, key);
     int64_t index = cut_index(key);
     if (index >= 0)
-        ISO_TRY(macro_find(&value, run, key, at));
+        ISO_TRY(macro_find(&value, run, key));
     if (value.kind == ISO_DATUM_NONE)
         return macro_unknown(run, whole, at);
     return put_value(run, &value, index, at);
@@ -64,11 +64,11 @@ static iso_status put_indexed(iso_macro_run *run, char key[MACRO_KEY_SIZE], cons
     ISO_TRY(macro_take(run, ']', "a ]"));
     if (run->skip > 0)
         return ISO_OK;
-    ISO_TRY(macro_find(&value, run, key, at));
+    ISO_TRY(macro_find(&value, run, key));
     size_t length = strlen(key);
     if (value.kind == ISO_DATUM_NONE && length > 1 && key[length - 1] == '_') {
         key[length - 1] = 0; /* [temperature_[current_extruder]] */
-        ISO_TRY(macro_find(&value, run, key, at));
+        ISO_TRY(macro_find(&value, run, key));
     }
     if (value.kind == ISO_DATUM_NONE)
         return macro_unknown(run, key, at);
