@@ -60,7 +60,7 @@ static inline void check_levels(const print *p) {
         double own = height[i < count ? i : count - 1];
         top += own;
         CHECK_NEAR(own, p->level[i].height, 1e-9);
-        CHECK_NEAR(top + p->options.z_offset, p->level[i].z, 5.1e-5);
+        CHECK_NEAR(top, p->level[i].z, 5.1e-5);
     }
     if (!CHECK_NEAR(top, p->report.printed_height, 1e-9))
         return;
@@ -68,7 +68,8 @@ static inline void check_levels(const print *p) {
     for (int32_t i = 0; i < p->move_count; i++) {
         const print_move *m = &p->move[i];
         wrong += m->kind == MOVE_DRAW &&
-                 (m->az != m->bz || fabs(m->bz - p->level[m->layer].z) > 0.00051);
+                 (m->az != m->bz ||
+                  fabs(m->bz - p->options.z_offset - p->level[m->layer].z) > 0.00051);
     }
     CHECK_EQUAL(0, wrong);
 }

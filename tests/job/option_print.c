@@ -41,7 +41,7 @@ static void gcode_resolution(const change *c) {
 static void z_offset(const change *c) {
     CHECK_EQUAL(c->a->level_count, c->b->level_count);
     for (int32_t i = 0; i < c->a->level_count; i++)
-        CHECK_NEAR(c->a->level[i].z + 0.25, c->b->level[i].z, 1e-9);
+        CHECK_NEAR(c->a->level[i].z, c->b->level[i].z, 1e-9); /* as PrusaSlicer: left out */
     for (int32_t i = 0; i < c->a->move_count; i++)
         if (c->a->move[i].layer >= 0 && c->a->move[i].kind == MOVE_DRAW)
             CHECK_NEAR(c->a->move[i].bz + 0.25, c->b->move[i].bz, 1e-9);
@@ -368,7 +368,6 @@ const option_row option_rows_print[] = {
      solid_infill_speed},
     {make_block, "top_solid_infill_speed", "60%", STEADY, top_solid_infill_speed},
     {make_block, "gap_fill_speed", "33", STEADY, no_path_of_it},
-    {make_block, "bridge_speed", "33", STEADY, no_path_of_it},
     {make_block, "first_layer_speed", "22", STEADY, first_layer_speed},
     {make_block, "first_layer_speed", "50%", STEADY, first_layer_speed_in_percent},
     {make_block, "travel_speed", "99", STEADY, travel_speed},

@@ -3,15 +3,13 @@
 #include "solids.h"
 
 extern const option_row option_rows_print[], option_rows_machine[], option_rows_outline[],
-    option_rows_bent[], option_rows_infill[], option_rows_paths[];
+    option_rows_bent[], option_rows_infill[], option_rows_speeds[], option_rows_gcode[],
+    option_rows_dialect[], option_rows_paths[], option_rows_objects[];
 
 static const option_row *const tables[] = {
-    option_rows_print,
-    option_rows_machine,
-    option_rows_outline,
-    option_rows_bent,
-    option_rows_infill,
-    option_rows_paths,
+    option_rows_print,  option_rows_machine, option_rows_outline, option_rows_bent,
+    option_rows_infill, option_rows_speeds,  option_rows_gcode,   option_rows_dialect,
+    option_rows_paths,  option_rows_objects,
 };
 
 int same_places(const print *a, const print *b) {
@@ -40,6 +38,9 @@ static void print_row(print *a, print *b, const option_row *r, const shape *s) {
              length == 0 || r->base[length - 1] == '\n' ? "" : "\n", r->key, r->value);
     print_shape(b, s, settings);
     /* The user may ask for less filament than was drawn back: the printer warns, and is right. */
+    if (b->machine.unknown_commands > 0 &&
+        CHECK(b->options.gcode_flavor > ISO_FLAVOUR_MARLIN || b->options.use_volumetric_e))
+        b->machine.warning_count = 0; /* it is a Marlin, and one without M200 */
     if (b->options.retract_restart_extra < 0 && CHECK(b->machine.warning_count > 0))
         b->machine.warning_count = 0;
 }
@@ -93,7 +94,9 @@ static void test_each_option(void) {
         for (size_t t = 0; t < sizeof tables / sizeof *tables; t++)
             for (const option_row *r = tables[t]; r->key; r++)
                 if (strcmp(r->key, key) == 0) {
-                    check_row(r, tables[t] == option_rows_bent);
+                    check_row(r, tables[t] == option_rows_bent ||
+                                     tables[t] == option_rows_dialect ||
+                                     tables[t] == option_rows_objects);
                     found++;
                 }
         if (!CHECK(found > 0))
