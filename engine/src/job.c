@@ -17,6 +17,7 @@
 #include "base/output.h"
 #include "gcode/writer.h"
 #include "path/order.h"
+#include "path/spiral.h"
 #include "plate.h"
 #include "stack.h"
 #include "surround.h"
@@ -40,6 +41,7 @@ typedef struct iso_job {
     iso_order_options order;
     iso_order_state *state; /* [plate.instances.count + 1] of each copy; the last: what is around */
     iso_point position;     /* of the nozzle */
+    bool spirals;           /* the layer below did */
     iso_output *output;
     iso_gcode_writer *writer;
     iso_texts texts;
@@ -180,9 +182,21 @@ static iso_status order_step(iso_job *job, const iso_step *step) {
     return ISO_OK;
 }
 
+/* Above the bottom shell. The next loop goes on from where the one below ended: a short way off at
+ * most, on upright walls none. */
+static iso_status spiral_step(iso_job *job, const iso_step *step, int32_t index, iso_point from) {
+    bool flat = !job->spirals;
+    if (!job->options->spiral_vase || index < job->options->bottom_solid_layers || index == 0)
+        return ISO_OK;
+    ISO_TRY(path_spiral(&job->spirals, &job->ordered, flat ? NULL : &from, step->height, flat));
+    return ISO_OK;
+}
+
 static iso_status write_step(iso_job *job, const iso_step *step, int32_t index) {
+    iso_point from = job->position;
     ISO_TRY(make_layers(job, step));
     ISO_TRY(order_step(job, step));
+    ISO_TRY(spiral_step(job, step, index, from));
     double begun = iso_stage_clock();
     if (job->ordered.count == 0 && job->empty++ == 0)
         job->lowest_empty = iso_mm(step->z);

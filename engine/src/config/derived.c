@@ -145,6 +145,15 @@ static double double_area(const iso_points *bed) {
     return area;
 }
 
+static iso_status check_vase(const iso_options *o) {
+    bool single = o->perimeters == 1 && o->fill_density == 0 && o->top_solid_layers == 0;
+    if (!o->spiral_vase || (single && o->duplicate == 1))
+        return ISO_OK;
+    return iso_fail(ISO_BAD_CONFIG,
+                    "spiral_vase: set perimeters = 1, fill_density = 0 and top_solid_layers = 0%s",
+                    o->duplicate > 1 ? ", and print one copy" : "");
+}
+
 iso_status iso_options_check(const iso_options *options) {
     const iso_numbers *heights = &options->layer_heights;
     ISO_TRY(check_layer(options, "layer_height", options->layer_height, false));
@@ -160,6 +169,7 @@ iso_status iso_options_check(const iso_options *options) {
         return iso_fail(ISO_BAD_CONFIG, "min_fan_speed = %d is above max_fan_speed = %d",
                         options->min_fan_speed, options->max_fan_speed);
     ISO_TRY(settings_check_objects(options));
+    ISO_TRY(check_vase(options));
     if (double_area(&options->bed_shape) == 0)
         return iso_fail(ISO_BAD_CONFIG, "bed_shape: the points lie on a line; give its corners one "
                                         "after the other around it");
