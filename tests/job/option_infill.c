@@ -180,6 +180,18 @@ static void infill_anchor_max(const change *c) {
     CHECK(print_length(c->b, SPARSE, 4) < print_length(c->a, SPARSE, 4));
 }
 
+/* From the second layer on pairs of 0.2 mm, drawn on the upper one; a third is too much for the
+ * nozzle. */
+static void infill_every_layers(const change *c) {
+    CHECK_NEAR(print_length(c->a, SPARSE, 0), print_length(c->b, SPARSE, 0), 1e-6);
+    for (int32_t layer = 1; layer + 1 < c->b->level_count; layer += 2) {
+        double both = print_filament(c->a, SPARSE, layer) + print_filament(c->a, SPARSE, layer + 1);
+        CHECK(print_length(c->b, SPARSE, layer) == 0);
+        CHECK_NEAR(both, print_filament(c->b, SPARSE, layer + 1), 0.06 * both);
+        CHECK(along(c->b, SPARSE, layer + 1, layer % 4 == 1 ? 135 : 45) > 0.7);
+    }
+}
+
 #define PLAIN "perimeters = 1\nfill_density = 30%\nsolid_infill_below_area = 0\n"
 #define ROW(word, check)                                                                           \
     { make_block, "fill_pattern", word, PLAIN, check }
@@ -208,5 +220,9 @@ const option_row option_rows_infill[] = {
      "infill_anchor_max = 3\ninfill_anchor = 0\n",
      infill_anchor},
     {make_block, "infill_anchor_max", "0", PLAIN "fill_pattern = grid\n", infill_anchor_max},
+    {make_block, "infill_every_layers", "3",
+     PLAIN "layer_height = 0.2\nfirst_layer_height = 0.2\ntop_solid_layers = 0\n"
+           "bottom_solid_layers = 0\n",
+     infill_every_layers},
     {0},
 };

@@ -49,7 +49,8 @@ typedef struct iso_fill_options {
     int32_t width, area; /* of the bead, units and units^2 */
     int32_t even;        /* nonzero: but all lines stay as wide as each other, even beside a wall */
     int32_t margin;    /* units, with `fit`: from the region's edge to that of what is to be full */
-    int32_t link_max;  /* units; longest piece of boundary that joins two lines; 0 = none */
+    int32_t link_max;  /* units; longest piece of boundary that joins two lines; 0 = none;
+                        * pieces that a widened line fills don't */
     int32_t anchor;    /* units; what is drawn of a longer one at the end of a path; 0 = none */
     int32_t monotonic; /* nonzero: lines one after another, each to the left of those before */
     int32_t deviation; /* units; a link goes straight if the boundary is nowhere further from it */
@@ -69,8 +70,8 @@ ISO_API iso_status iso_fill_options_validate(const iso_fill_options *options) IS
 /* Append the paths of options->pattern that fill `region` (clean contours, outer ones
  * counter-clockwise, with parents) to `out`. Patterns hang on `origin`, wherever the region is, so
  * that layers lie on each other. Vertices lie within a unit of the region; no piece of boundary is
- * drawn twice. `planar` as for the planar operations; only concentric uses it. Both scratches may
- * be NULL. ISO_USAGE for options or a region out of their range; on failure `out` is as before. */
+ * drawn twice. `planar` as for the planar operations. Both scratches may be NULL. ISO_USAGE for
+ * options or a region out of their range; on failure `out` is as before. */
 ISO_API iso_status iso_fill(iso_paths *out, const iso_region *region,
                             const iso_fill_options *options, struct iso_arena *scratch,
                             iso_planar_scratch *planar) ISO_MUST_CHECK;

@@ -109,6 +109,27 @@ static iso_status fill_pattern(iso_paths *out, const iso_region *region,
     }
 }
 
+/* Loops and links along the border are as wide as any bead, so those of a solid fill lie half a
+ * spacing from what is around; hatches make do with less. */
+static iso_status fill_solid(iso_paths *out, const iso_region *region,
+                             const iso_fill_options *options, iso_arena *scratch,
+                             iso_planar_scratch *planar) {
+    iso_region inside = {0};
+    iso_offset_options inset =
+        iso_offset_defaults(options->margin - (int32_t)(options->spacing / 2 + 0.5));
+    iso_status status = iso_offset(&inside, region, &inset, planar);
+    if (status == ISO_OK && inside.count > 0)
+        status = fill_pattern(out, &inside, options, scratch, planar);
+    iso_region_free(&inside);
+    return status;
+}
+
+static int has_wide_border(const iso_fill_options *options) {
+    return options->density >= 1 && options->pattern >= ISO_PATTERN_CONCENTRIC &&
+           iso_fill_pattern_is_solid((iso_fill_pattern)options->pattern) &&
+           options->margin < (int32_t)(options->spacing / 2);
+}
+
 static iso_status validate(const iso_fill_options *options) {
     ISO_TRY(iso_fill_options_validate(options));
     if (options->pattern < 0 || options->pattern >= ISO_PATTERN_COUNT)
@@ -132,10 +153,12 @@ iso_status iso_fill(iso_paths *out, const iso_region *region, const iso_fill_opt
     int32_t count = out->count, vertex_count = out->vertex_count;
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     iso_status status = ISO_OK;
-    if (!planar && options->pattern == ISO_PATTERN_CONCENTRIC)
+    int wide = has_wide_border(options);
+    if (!planar && (wide || options->pattern == ISO_PATTERN_CONCENTRIC))
         status = iso_planar_scratch_new(&own_planar);
+    planar = planar ? planar : own_planar;
     if (status == ISO_OK)
-        status = fill_pattern(out, region, options, scratch, planar ? planar : own_planar);
+        status = (wide ? fill_solid : fill_pattern)(out, region, options, scratch, planar);
     iso_arena_pop(scratch, mark);
     iso_arena_free(&own);
     iso_planar_scratch_free(own_planar);
