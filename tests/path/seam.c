@@ -161,6 +161,50 @@ static void test_random_is_even(void) {
     iso_paths_free(&paths);
 }
 
+/* The rearmost corner hangs over air: another one. */
+static void test_not_over_air(void) {
+    static const double square[][2] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+    iso_paths paths = {0};
+    iso_seams seams = {0};
+    add_loop(&paths, square, 4);
+    paths.vertex[3].role = paths.vertex[2].role = ISO_ROLE_OVERHANG_PERIMETER;
+    iso_point at = choose(&paths, &seams, 0, ISO_SEAM_ALIGNED, (iso_point){0}).at;
+    CHECK_NEAR(0, mm_from(at, 0, 0), 0);
+    at = choose(&paths, &seams, 0, ISO_SEAM_NEAREST, (iso_point){60000, 90000}).at;
+    CHECK_NEAR(0, mm_from(at, 10, 0), 0);
+    iso_seams_free(&seams);
+    iso_paths_free(&paths);
+}
+
+/* Hundreds of towers, each with a hole: sorted into cells or not, the seams are the same. */
+static void test_many_walls(void) {
+    iso_seams seams = {0}, plain = {0};
+    iso_arena scratch = {0};
+    for (int layer = 0; layer < 3; layer++) {
+        iso_paths paths = {0};
+        for (int i = 0; i < 300; i++) {
+            circle(&paths, 10 * (i % 20), 10 * (i / 20), 4, 30, 0.1 * layer + i);
+            circle(&paths, 10 * (i % 20), 10 * (i / 20), 1, 12, 0.2 * layer + i);
+        }
+        iso_seams_next_layer(&seams);
+        iso_seams_next_layer(&plain);
+        CHECK_OK(iso_seams_index(&seams, &scratch));
+        CHECK_EQUAL(layer > 0, seams.first != NULL);
+        for (int i = 0; i < 600; i++) {
+            iso_point a = choose(&paths, &seams, i, ISO_SEAM_ALIGNED, (iso_point){0}).at;
+            iso_point b = choose(&paths, &plain, i, ISO_SEAM_ALIGNED, (iso_point){0}).at;
+            CHECK(a.x == b.x && a.y == b.y);
+            if (layer > 0)
+                CHECK(hypot((double)a.x - seams.below[i].at.x, (double)a.y - seams.below[i].at.y) <
+                      2000);
+        }
+        iso_paths_free(&paths);
+    }
+    iso_arena_free(&scratch);
+    iso_seams_free(&seams);
+    iso_seams_free(&plain);
+}
+
 /* Near where the nozzle is, but not on a flat side if a corner is not much farther. */
 static void test_nearest_prefers_corners(void) {
     iso_paths paths = {0};
@@ -215,6 +259,8 @@ int main(void) {
     RUN(test_aligned_begins_anew);
     RUN(test_rear);
     RUN(test_random_is_even);
+    RUN(test_not_over_air);
+    RUN(test_many_walls);
     RUN(test_nearest_prefers_corners);
     RUN(test_beside);
     RUN(test_without_memory);

@@ -10,7 +10,8 @@ enum {
     SLIDE = 1 * ISO_UNITS_PER_MM, /* along the wall to a corner */
     ARM = ISO_UNITS_PER_MM / 2,   /* a corner turns within this much before and after it */
     SHARPEST = 16,
-    BLUNT = 2 /* corners that turn by less, 40 degrees, hide nothing */
+    BLUNT = 2,   /* corners that turn by less, 40 degrees, hide nothing */
+    HANGING = 40 /* grades that a bead over air takes away: it holds to nothing where it begins */
 };
 
 void iso_seams_free(iso_seams *seams) {
@@ -29,6 +30,53 @@ void iso_seams_next_layer(iso_seams *seams) {
     seams->here_count = 0;
     seams->here_capacity = capacity;
     seams->layer++;
+    seams->first = seams->in = NULL;
+}
+
+static int32_t cell_of(int64_t offset, int32_t size, int32_t cells) {
+    int64_t c = offset < 0 ? 0 : offset / size;
+    return (int32_t)(c < cells ? c : cells - 1);
+}
+
+enum { FEW = 32 /* are looked through one by one */ };
+
+static int32_t cell_of_mark(const iso_seams *seams, int32_t i) {
+    iso_point p = seams->below[i].at;
+    return cell_of((int64_t)p.y - seams->origin.y, seams->size, seams->rows) * seams->columns +
+           cell_of((int64_t)p.x - seams->origin.x, seams->size, seams->columns);
+}
+
+iso_status iso_seams_index(iso_seams *seams, iso_arena *scratch) {
+    int32_t count = seams->below_count;
+    if (count <= FEW)
+        return ISO_OK;
+    iso_point low = seams->below[0].at, high = low;
+    for (int32_t i = 1; i < count; i++) {
+        iso_point p = seams->below[i].at;
+        low.x = p.x < low.x ? p.x : low.x;
+        low.y = p.y < low.y ? p.y : low.y;
+        high.x = p.x > high.x ? p.x : high.x;
+        high.y = p.y > high.y ? p.y : high.y;
+    }
+    int64_t width = (int64_t)high.x - low.x + 1, height = (int64_t)high.y - low.y + 1;
+    int64_t size = (int64_t)sqrt((double)width * (double)height / count) + 1;
+    int64_t longest = (width > height ? width : height) / count + 1;
+    seams->size = (int32_t)(size > longest ? size : longest);
+    seams->origin = low;
+    seams->columns = (int32_t)(width / seams->size + 1);
+    seams->rows = (int32_t)(height / seams->size + 1);
+    int32_t cells = seams->columns * seams->rows, *first;
+    ISO_TRY(ISO_PUSH(seams->in, scratch, count));
+    ISO_TRY(ISO_PUSH(first, scratch, (int64_t)cells + 2));
+    memset(first, 0, ((size_t)cells + 2) * sizeof *first);
+    for (int32_t i = 0; i < count; i++)
+        first[cell_of_mark(seams, i) + 2]++;
+    for (int32_t c = 0; c < cells; c++)
+        first[c + 2] += first[c + 1];
+    for (int32_t i = 0; i < count; i++)
+        seams->in[first[cell_of_mark(seams, i) + 1]++] = i;
+    seams->first = first;
+    return ISO_OK;
 }
 
 static double distance(iso_point a, iso_point b) {
@@ -70,6 +118,11 @@ int32_t iso_seam_corner(const iso_path_vertex *vertex, int32_t count, int32_t i)
     return ax * by - ay * bx < 0 ? SHARPEST + grade : grade;
 }
 
+static int32_t grade_of(const iso_path_vertex *vertex, int32_t count, int32_t i) {
+    int32_t grade = iso_seam_corner(vertex, count, i);
+    return vertex[i].role == ISO_ROLE_OVERHANG_PERIMETER ? grade - HANGING : grade;
+}
+
 static iso_seam_place at_vertex(const iso_path_vertex *vertex, int32_t i) {
     return (iso_seam_place){i, vertex[i].at};
 }
@@ -88,30 +141,60 @@ static iso_box box_of(const iso_path_vertex *vertex, int32_t count) {
     return box;
 }
 
-/* The point of the wall nearest to one of the seams below; false if none is within reach. */
-static int find_below(iso_seam_place *place, const iso_seams *seams, const iso_path *path,
-                      const iso_path_vertex *vertex) {
-    int64_t closest = (int64_t)REACH * REACH + 1;
-    iso_box box = box_of(vertex, path->count);
-    int found = 0;
-    for (int32_t s = 0; s < seams->below_count; s++) {
-        const iso_seam_mark *mark = &seams->below[s];
-        iso_point p = mark->at;
-        if (mark->object != path->object || p.x < box.min.x - REACH || p.x > box.max.x + REACH ||
-            p.y < box.min.y - REACH || p.y > box.max.y + REACH)
-            continue;
-        for (int32_t i = 0; i < path->count; i++) {
-            iso_point b = vertex[i + 1 < path->count ? i + 1 : 0].at;
-            iso_point on = iso_nearest_on_segment(p, vertex[i].at, b);
-            int64_t d = iso_distance_squared(p, on);
-            if (d < closest) {
-                closest = d;
-                *place = (iso_seam_place){i, on};
-                found = 1;
-            }
+/* Does one side of the boxes agree? Those of a plate and of a hole in it don't, so that a plate
+ * with thousands of holes need not look at all their seams. */
+static int are_alike(iso_box a, iso_box b) {
+    int64_t side[4] = {(int64_t)a.min.x - b.min.x, (int64_t)a.min.y - b.min.y,
+                       (int64_t)a.max.x - b.max.x, (int64_t)a.max.y - b.max.y};
+    for (int i = 0; i < 4; i++)
+        if (side[i] >= -REACH && side[i] <= REACH)
+            return 1;
+    return 0;
+}
+
+/* A wall that looks for the nearest of the seams below. */
+typedef struct looking {
+    const iso_path *path;
+    const iso_path_vertex *vertex;
+    iso_box box;
+    iso_seam_place place;
+    int64_t closest;
+    int found;
+} looking;
+
+static void look_at(looking *l, const iso_seam_mark *mark) {
+    iso_point p = mark->at;
+    if (mark->object != l->path->object || p.x < l->box.min.x - REACH ||
+        p.x > l->box.max.x + REACH || p.y < l->box.min.y - REACH || p.y > l->box.max.y + REACH ||
+        !are_alike(mark->box, l->box))
+        return;
+    for (int32_t i = 0; i < l->path->count; i++) {
+        iso_point b = l->vertex[i + 1 < l->path->count ? i + 1 : 0].at;
+        iso_point on = iso_nearest_on_segment(p, l->vertex[i].at, b);
+        int64_t d = iso_distance_squared(p, on);
+        if (d < l->closest) {
+            l->closest = d;
+            l->place = (iso_seam_place){i, on};
+            l->found = 1;
         }
     }
-    return found;
+}
+
+static void find_below(looking *l, const iso_seams *seams) {
+    l->closest = (int64_t)REACH * REACH + 1;
+    for (int32_t s = 0; s < seams->below_count && !seams->first; s++)
+        look_at(l, &seams->below[s]);
+    if (!seams->first)
+        return;
+    iso_point low = l->box.min, high = l->box.max, origin = seams->origin;
+    int32_t left = cell_of((int64_t)low.x - REACH - origin.x, seams->size, seams->columns);
+    int32_t right = cell_of((int64_t)high.x + REACH - origin.x, seams->size, seams->columns);
+    int32_t top = cell_of((int64_t)high.y + REACH - origin.y, seams->size, seams->rows);
+    for (int32_t r = cell_of((int64_t)low.y - REACH - origin.y, seams->size, seams->rows); r <= top;
+         r++)
+        for (int32_t k = seams->first[r * seams->columns + left];
+             k < seams->first[r * seams->columns + right + 1]; k++)
+            look_at(l, &seams->below[seams->in[k]]);
 }
 
 /* To the best corner within the distance that a seam may slide; of equals the nearest. */
@@ -128,7 +211,7 @@ static iso_seam_place slide_to_corner(iso_seam_place place, const iso_path *path
             way += distance(at, vertex[i].at);
             if (way > SLIDE)
                 break;
-            int32_t here = iso_seam_corner(vertex, path->count, i);
+            int32_t here = grade_of(vertex, path->count, i);
             if (here > grade || (here == grade && here > 0 && way < nearest)) {
                 grade = here;
                 nearest = way;
@@ -146,9 +229,9 @@ static int is_further_back(iso_point a, iso_point b) {
 }
 
 static iso_seam_place best_corner(const iso_path *path, const iso_path_vertex *vertex) {
-    int32_t best = 0, grade = iso_seam_corner(vertex, path->count, 0);
+    int32_t best = 0, grade = grade_of(vertex, path->count, 0);
     for (int32_t i = 1; i < path->count; i++) {
-        int32_t here = iso_seam_corner(vertex, path->count, i);
+        int32_t here = grade_of(vertex, path->count, i);
         if (here > grade || (here == grade && is_further_back(vertex[i].at, vertex[best].at))) {
             grade = here;
             best = i;
@@ -169,7 +252,7 @@ static iso_seam_place nearest_corner(const iso_path *path, const iso_path_vertex
         double way = distance(vertex[i].at, from) - 3.0 * ISO_UNITS_PER_MM;
         if (way >= least)
             continue;
-        int32_t grade = iso_seam_corner(vertex, path->count, i);
+        int32_t grade = grade_of(vertex, path->count, i);
         grade = grade > SHARPEST ? SHARPEST : grade;
         double cost = way + 3.0 * ISO_UNITS_PER_MM * (SHARPEST - grade) / SHARPEST;
         if (cost < least) {
@@ -218,10 +301,12 @@ static iso_seam_place anywhere(const iso_path *path, const iso_path_vertex *vert
 iso_status iso_seam_choose(iso_seam_place *place, iso_seams *seams, const iso_path *path,
                            const iso_path_vertex *vertex, int32_t number, iso_seam how,
                            iso_point from) {
+    looking l = {.path = path, .vertex = vertex};
     switch (how) {
     case ISO_SEAM_ALIGNED:
-        *place = find_below(place, seams, path, vertex) ? slide_to_corner(*place, path, vertex)
-                                                        : best_corner(path, vertex);
+        l.box = box_of(vertex, path->count);
+        find_below(&l, seams);
+        *place = l.found ? slide_to_corner(l.place, path, vertex) : best_corner(path, vertex);
         break;
     case ISO_SEAM_REAR:
         *place = rearmost(path, vertex);
@@ -236,7 +321,7 @@ iso_status iso_seam_choose(iso_seam_place *place, iso_seams *seams, const iso_pa
     if (how != ISO_SEAM_ALIGNED)
         return ISO_OK;
     ISO_TRY(ISO_GROW(seams->here, seams->here_capacity, (int64_t)seams->here_count + 1));
-    seams->here[seams->here_count++] = (iso_seam_mark){place->at, path->object};
+    seams->here[seams->here_count++] = (iso_seam_mark){place->at, path->object, l.box};
     return ISO_OK;
 }
 

@@ -321,6 +321,8 @@ iso_status ordering_walls(iso_ordering *o, iso_run run) {
 iso_status ordering_choose_seams(iso_ordering *o) {
     if (o->options->seam == ISO_SEAM_NEAREST)
         return ISO_OK;
+    if (o->options->seam == ISO_SEAM_ALIGNED)
+        ISO_TRY(iso_seams_index(o->seams, o->scratch));
     for (int32_t k = 0; k < o->count; k++) {
         int32_t p = o->key[k].path;
         const iso_path *path = &o->in->path[p];
