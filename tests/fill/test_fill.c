@@ -323,11 +323,75 @@ static void test_few_travels(void) {
             shapes[i].make(&region, 0);
             iso_fill_options options = bare_options(4500, angle, 1);
             options.link_max = 1000000;
+            options.even = 1; /* lines as wide as what is left beside them need fewer */
             CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
             CHECK(paths.count - 1 <= most[i]);
             iso_paths_free(&paths);
             drop_region(&region);
         }
+    iso_arena_free(&scratch);
+}
+
+typedef struct drawn_line {
+    double from, to, level; /* along the line, across it */
+} drawn_line;
+
+/* Of a fill at angle 0 and spacing 13000: its lines in the order in which they are drawn. */
+static int drawn_lines(drawn_line *line, const iso_paths *paths) {
+    int count = 0;
+    for (int i = 0; i < paths->count; i++)
+        for (int k = 0; k + 1 < paths->path[i].count; k++) {
+            const iso_path_vertex *v = paths->vertex + paths->path[i].first + k;
+            double level = v[0].at.y / 13000.0; /* else it is a link */
+            if (fabs(level - round(level)) > 0.0002 || abs(v[0].at.y - v[1].at.y) > 1 ||
+                abs(v[0].at.x - v[1].at.x) < 3000)
+                continue;
+            line[count++] = (drawn_line){fmin(v[0].at.x, v[1].at.x), fmax(v[0].at.x, v[1].at.x),
+                                         (v[0].at.y + v[1].at.y) / 2.0};
+        }
+    return count;
+}
+
+/* Monotonic: no line is drawn before its neighbour below. Neighbours overlap, and what is between
+ * them is inside the region. */
+static void test_monotonic_order(void) {
+    iso_arena scratch = {0};
+    for (unsigned seed = 0; seed < (unsigned)shape_count + 30; seed++) {
+        iso_region region = {0};
+        iso_paths paths = {0}, zigzag = {0};
+        if (seed < (unsigned)shape_count) {
+            shapes[seed].make(&region, 7 * seed);
+        } else {
+            cells grid = cells_random(seed, 30);
+            cells_region(&region, &grid, 40000, 0);
+        }
+        iso_fill_options options = bare_options(13000, 0, 0);
+        CHECK_OK(iso_fill_rectilinear(&zigzag, &region, &options, &scratch));
+        options.monotonic = 1;
+        CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
+        drawn_line *line = malloc(((size_t)paths.vertex_count + 1) * sizeof *line);
+        drawn_line *free_line = malloc(((size_t)zigzag.vertex_count + 1) * sizeof *line);
+        int count = drawn_lines(line, &paths), wrong = 0;
+        CHECK_EQUAL(drawn_lines(free_line, &zigzag), count);
+        CHECK(paths.count >= zigzag.count);
+        for (int i = 0; i < count; i++)
+            for (int k = i + 1; k < count; k++) {
+                double from = fmax(line[i].from, line[k].from), to = fmin(line[i].to, line[k].to);
+                double below = line[i].level - line[k].level, x = (from + to) / 2;
+                if (fabs(below - 13000) > 3 || to - from < 2000)
+                    continue; /* the later one is not right below */
+                int joined = 1;
+                for (int t = 0; t <= 8; t++)
+                    joined &= is_inside(&region, x, line[k].level + below * t / 8, 0);
+                wrong += joined;
+            }
+        CHECK_EQUAL(0, wrong);
+        free(line);
+        free(free_line);
+        iso_paths_free(&paths);
+        iso_paths_free(&zigzag);
+        drop_region(&region);
+    }
     iso_arena_free(&scratch);
 }
 
@@ -501,6 +565,7 @@ int main(void) {
     RUN(test_fitted_lines);
     RUN(test_lines_of_a_disc);
     RUN(test_few_travels);
+    RUN(test_monotonic_order);
     RUN(test_links_are_no_longer_than_allowed);
     RUN(test_starts_of_contours_do_not_matter);
     RUN(test_little_regions);

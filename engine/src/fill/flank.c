@@ -11,6 +11,9 @@
 #define NARROWEST 0.6
 #define WIDEST 1.4
 
+/* An arc between two lines counts as running along them from this many spacings on. */
+#define SLOPE_LENGTH 2.75
+
 enum { NEIGHBOURS = 32 }; /* darts looked at in a cell */
 
 static double along(const iso_sweep *sweep, iso_point p) {
@@ -39,10 +42,34 @@ static int32_t facing(const iso_flanks *f, int32_t dart) {
     return -1;
 }
 
+static double ahead_of(const iso_flanks *f, int32_t dart) {
+    const iso_crossing *crossing = f->hatch->crossing;
+    return along(f->sweep, crossing[f->hatch->link.arc[dart] >> 1].at) -
+           along(f->sweep, crossing[dart >> 1].at);
+}
+
+int iso_flanks_run_along(const iso_flanks *f, int32_t dart) {
+    return ((f->hatch->link.arc[dart] ^ dart) & 1) &&
+           fabs(ahead_of(f, dart)) > SLOPE_LENGTH * f->usual.spacing;
+}
+
+/* An arc that runs along its lines lies above the lower one's segment or below that of the upper
+ * one. */
+static iso_flank slope_at(const iso_flanks *f, int32_t dart) {
+    int32_t low = dart >> 1, high = f->hatch->link.arc[dart] >> 1;
+    double ahead = ahead_of(f, dart);
+    int over_low = (low & 1) == (ahead < 0), under_high = (high & 1) == (ahead > 0);
+    if (!iso_flanks_run_along(f, dart) || over_low == under_high)
+        return (iso_flank){.segment = -1};
+    return over_low ? (iso_flank){low >> 1, dart, 1} : (iso_flank){high >> 1, dart, 0};
+}
+
 /* Which segment gives way to the arc that leaves from here? -1 if none. */
 static iso_flank flank_at(const iso_flanks *f, int32_t dart) {
     int32_t other = f->hatch->link.arc[dart], above = dart & 1;
-    if (other < dart || ((other ^ dart) & 1))
+    if ((other ^ dart) & 1)
+        return above ? slope_at(f, dart) : (iso_flank){.segment = -1};
+    if (other < dart)
         return (iso_flank){.segment = -1};
     if (other >> 2 == dart >> 2)
         return (iso_flank){dart >> 2, dart, above};
@@ -65,17 +92,13 @@ static int32_t bins_of(const iso_flanks *f, int32_t segment) {
 }
 
 iso_status iso_flanks_find(iso_flanks *f, iso_arena *scratch) {
-    int32_t darts = 2 * f->hatch->link.count;
-    for (int32_t d = 0; d < darts; d++)
-        f->count += f->hatch->link.arc[d] > d && !((f->hatch->link.arc[d] ^ d) & 1);
-    ISO_TRY(ISO_PUSH(f->flank, scratch, f->count));
     const iso_fill_part *part = &f->hatch->part;
     int64_t points = 0;
     for (int32_t m = 0; m < part->count; m++)
         points += part->region->first[part->member[m] + 1] - part->region->first[part->member[m]];
     ISO_TRY(ISO_PUSH(f->point, scratch, points));
-    f->count = 0;
-    for (int32_t d = 0; d < darts; d++) {
+    ISO_TRY(ISO_PUSH(f->flank, scratch, f->hatch->link.count));
+    for (int32_t d = 0; d < 2 * f->hatch->link.count; d++) {
         iso_flank flank = flank_at(f, d);
         if (flank.segment < 0)
             continue;

@@ -30,7 +30,7 @@ typedef struct iso_flanks {
     iso_bead usual;  /* of the lines: width, area, and their spacing; height unused */
     int32_t nominal; /* width in units from which pieces keep within 0.6 and 1.4 */
     int32_t margin;  /* from the region's edge to that of what is to be full */
-    int32_t count, at;
+    int32_t count;
     iso_flank *flank; /* by segment */
     iso_point *point; /* room for an arc */
     int32_t pieces;   /* all segments' pieces together are no more */
@@ -39,6 +39,10 @@ typedef struct iso_flanks {
 /* All of the hatch's, by segment. Cells that go round more than a few neighbours are passed over:
  * so it takes O(crossings). */
 iso_status iso_flanks_find(iso_flanks *flanks, iso_arena *scratch) ISO_MUST_CHECK;
+
+/* Does the arc between two lines run along them for long? Then it is filled by one of them, and no
+ * link is needed there. */
+int iso_flanks_run_along(const iso_flanks *flanks, int32_t dart);
 
 /* Has the segment any? Where they begin, or -1. Asked in any order: O(log count). */
 int32_t iso_flanks_of(const iso_flanks *flanks, int32_t segment);

@@ -9,6 +9,10 @@
  * the edge runs almost along the line. */
 #define REACH_MOST 2.0
 
+/* Ends at least as upright to the boundary as this make room for links that bring more than is
+ * missing; at others that would leave gaps. */
+#define UPRIGHT 0.6
+
 typedef struct bead {
     int32_t width, area;
 } bead;
@@ -36,6 +40,11 @@ static void draw_to(zigzag *run, iso_point to, bead with) {
     run->point[run->count++] = to;
 }
 
+/* Does a line's widening fill the strip along this arc? */
+static int is_slope(const zigzag *run, int32_t dart) {
+    return run->flanks->count > 0 && iso_flanks_run_along(run->flanks, dart);
+}
+
 /* Is every point within `deviation` of the line a-b? (The points of a short arc: so no spike can
  * hide beyond the ends for longer than the link itself.) */
 static int is_straight(iso_point a, iso_point b, const iso_point *point, int32_t count,
@@ -50,19 +59,55 @@ static int is_straight(iso_point a, iso_point b, const iso_point *point, int32_t
     return 1;
 }
 
+static iso_point place(const zigzag *run, int32_t dart) {
+    return run->hatch->crossing[dart >> 1].at;
+}
+
+/* The sine of the angle between a line and the boundary that ends it. */
+static double steepness(const zigzag *run, int32_t dart) {
+    const iso_region *region = run->hatch->part.region;
+    int32_t i = run->hatch->crossing[dart >> 1].edge >> 1;
+    int32_t contour = run->hatch->part.member[run->hatch->link.contour[dart >> 1]];
+    int32_t next = i + 1 < region->first[contour + 1] ? i + 1 : region->first[contour];
+    iso_point a = region->point[i], b = region->point[next];
+    iso_point p = place(run, dart), q = place(run, dart ^ 2);
+    double lengths = iso_hatch_distance(a, b) * iso_hatch_distance(p, q);
+    double cross = ((double)b.x - a.x) * ((double)q.y - p.y);
+    cross -= ((double)b.y - a.y) * ((double)q.x - p.x);
+    return lengths > 0 ? fabs(cross) / lengths : 1;
+}
+
+/* The end of a line, moved out along it until it is `by` units further from the boundary, or in if
+ * that is negative; by no more than `most` units, and a quarter of the line. */
+static iso_point moved_end(const zigzag *run, int32_t dart, double by, double most) {
+    iso_point end = place(run, dart), other = place(run, dart ^ 2);
+    double length = iso_hatch_distance(other, end), steep = steepness(run, dart);
+    if (length <= 0)
+        return end;
+    most = by < 0 && most > length / 4 ? length / 4 : most;
+    double far = fabs(by) < steep * most ? by / steep : by < 0 ? -most : most;
+    end.x += (int32_t)floor(far / length * ((double)end.x - other.x) + 0.5);
+    end.y += (int32_t)floor(far / length * ((double)end.y - other.y) + 0.5);
+    return end;
+}
+
 /* Of a solid fill's lines the ends already lie within the strip that its links run in, so a link
  * adds only what is missing there: two margins' worth of its length. One shorter than a bead is
- * wide is but a bend of its lines' bead, and goes by their width. */
-static bead link_bead(const zigzag *run, double length) {
+ * wide is but a bend of its lines' bead, and goes by their width. Others are not too thin to hold;
+ * `surplus` is how much more, in units of margin, they bring then. */
+static bead link_bead(double *surplus, const zigzag *run, double length) {
     const iso_fill_options *options = run->options;
+    *surplus = 0;
     if (!options->fit)
         return (bead){options->width, options->area};
-    double flow = 2.0 * options->margin / options->spacing, least = FLOW_LEAST;
+    double wanted = 2.0 * options->margin / options->spacing, least = FLOW_LEAST;
     int bend = length <= options->width;
     if (!bend)
         least = 1 - (1 - WIDTH_LEAST) * options->width / options->spacing;
-    flow = flow < least ? least : flow > 1 ? 1 : flow;
+    double flow = wanted < least ? least : wanted > 1 ? 1 : wanted;
     double narrower = (1 - flow) * options->spacing;
+    if (wanted > 0 && flow > wanted)
+        *surplus = (flow - wanted) * options->spacing / 2;
     return (bead){bend ? run->line.width : (int32_t)(options->width - narrower + 0.5),
                   (int32_t)(options->area * flow + 0.5)};
 }
@@ -72,19 +117,23 @@ static bead link_bead(const zigzag *run, double length) {
 static int32_t draw_link(zigzag *run, int32_t dart) {
     const iso_hatch *hatch = run->hatch;
     int32_t reach = hatch->link.arc[dart];
-    if (run->drawn[reach >> 2])
+    if (run->drawn[reach >> 2] || is_slope(run, dart))
         return -1;
-    iso_point *arc = run->point + run->count, end = hatch->crossing[reach >> 1].at;
+    iso_point *arc = run->point + run->count, end = place(run, reach);
     int32_t count = iso_hatch_follow(arc, hatch, dart, run->options->link_max);
     if (count < 0)
         return -1;
-    double length = 0;
+    double length = 0, surplus;
     for (int32_t i = 0; i <= count; i++)
         length += iso_hatch_distance(arc[i - 1], i < count ? arc[i] : end);
-    bead with = link_bead(run, length);
-    if (!is_straight(arc[-1], end, arc, count, run->options->deviation))
+    bead with = link_bead(&surplus, run, length);
+    if (!is_straight(arc[-1], end, arc, count, run->options->deviation)) {
         for (int32_t i = 0; i < count; i++)
             draw_to(run, arc[i], with);
+    } else if (surplus > 0 && steepness(run, dart) > UPRIGHT && steepness(run, reach) > UPRIGHT) {
+        arc[-1] = moved_end(run, dart, -surplus, 2 * surplus); /* the lines give way */
+        end = moved_end(run, reach, -surplus, 2 * surplus);
+    }
     draw_to(run, end, with);
     return iso_fill_link_other_side(reach);
 }
@@ -115,15 +164,12 @@ static int32_t draw_upward(zigzag *run, int32_t dart) {
     return draw_link(run, leave);
 }
 
-static iso_point place(const zigzag *run, int32_t dart) {
-    return run->hatch->crossing[dart >> 1].at;
-}
-
 /* The segment that starts at the run's end, at `dart`. */
 static void draw_segment(zigzag *run, int32_t dart) {
     int32_t segment = dart >> 2, first = iso_flanks_of(run->flanks, segment);
     iso_flank_piece piece[ISO_FLANK_PIECES];
-    draw_to(run, place(run, dart), run->line);
+    if (!run->count)
+        draw_to(run, place(run, dart), run->line);
     int32_t count = first < 0 ? 0 : iso_flanks_pieces(piece, run->flanks, first);
     int backward = (dart >> 1) & 1;
     for (int32_t i = 0; i < count; i++) {
@@ -169,35 +215,15 @@ static int is_short(const zigzag *run) {
     return run->count < 2 || length <= run->options->shortest;
 }
 
-/* The sine of the angle between a line and the boundary that ends it. */
-static double steepness(const zigzag *run, int32_t dart) {
-    const iso_region *region = run->hatch->part.region;
-    int32_t i = run->hatch->crossing[dart >> 1].edge >> 1;
-    int32_t contour = run->hatch->part.member[run->hatch->link.contour[dart >> 1]];
-    iso_point a = region->point[i];
-    iso_point b =
-        region->point[i + 1 < region->first[contour + 1] ? i + 1 : region->first[contour]];
-    iso_point p = place(run, dart), q = place(run, dart ^ 2);
-    double cross =
-        ((double)b.x - a.x) * ((double)q.y - p.y) - ((double)b.y - a.y) * ((double)q.x - p.x);
-    double lengths = iso_hatch_distance(a, b) * iso_hatch_distance(p, q);
-    return lengths > 0 ? fabs(cross) / lengths : 1;
-}
-
 /* An end without a link: out to the edge, since nothing else fills the margin there; but by no more
  * than lines overlap with what is around anyway. If that is nothing, the edge may be the model's.
  */
-static void draw_out(const zigzag *run, iso_point *end, int32_t dart) {
-    iso_point here = place(run, dart), before = place(run, dart ^ 2);
-    double length = iso_hatch_distance(before, here), margin = run->options->margin;
-    double overlap = run->options->spacing / 2 - margin;
-    margin = margin < overlap ? margin : overlap;
-    if (!run->options->fit || length <= 0 || margin <= 0)
-        return;
-    double steep = steepness(run, dart);
-    double by = margin * (steep * REACH_MOST > 1 ? 1 / steep : REACH_MOST) / length;
-    end->x += (int32_t)floor(by * ((double)here.x - before.x) + 0.5);
-    end->y += (int32_t)floor(by * ((double)here.y - before.y) + 0.5);
+static iso_point drawn_out(const zigzag *run, iso_point end, int32_t dart) {
+    double margin = run->options->margin, overlap = run->options->spacing / 2 - margin;
+    double by = margin < overlap ? margin : overlap;
+    if (!run->options->fit || by <= 0 || is_slope(run, dart) || is_slope(run, dart ^ 1))
+        return end;
+    return moved_end(run, dart, by, REACH_MOST * by);
 }
 
 static iso_status add_run(iso_paths *out, zigzag *run) {
@@ -205,8 +231,8 @@ static iso_status add_run(iso_paths *out, zigzag *run) {
     like.closed = 0;
     if (is_short(run))
         return ISO_OK;
-    draw_out(run, &run->point[0], run->end[0]);
-    draw_out(run, &run->point[run->count - 1], run->end[1]);
+    run->point[0] = drawn_out(run, run->point[0], run->end[0]);
+    run->point[run->count - 1] = drawn_out(run, run->point[run->count - 1], run->end[1]);
     int32_t at = out->vertex_count;
     ISO_TRY(iso_paths_add(out, &like, run->point, run->count, run->line.width, run->line.area));
     for (int32_t i = 1; i < run->count; i++) {
