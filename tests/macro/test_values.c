@@ -43,6 +43,7 @@ static void test_numbers_with_a_point_have_six_digits(void) {
                                        {"{0.0001234567}", "0.000123457"},
                                        {"{3.14159265358979}", "3.14159"},
                                        {"{1e3}", "1000"},
+                                       {"{-0.0}", "-0"},
                                        {"{2.5e2}", "250"}};
     CHECK_CASES(cases);
 }

@@ -46,7 +46,7 @@ static int round_digits(char digit[SIGNIFICANT], int *exponent, double magnitude
 int iso_datum_write_number(char text[ISO_DATUM_TEXT_SIZE], double number) {
     char digit[SIGNIFICANT];
     char *to = text;
-    if (number < 0)
+    if (number < 0 || (number == 0 && 1 / number < 0))
         *to++ = '-';
     if (number == 0) {
         *to++ = '0';

@@ -165,7 +165,7 @@ static iso_status absolute_width(iso_datum *value, iso_macro_run *run, const cha
     } else if (written == 0) {
         bool bare = strncmp(key, "support_", 8) == 0 || strncmp(key, "top_", 4) == 0;
         ISO_TRY(number_named(&number, run, "nozzle_diameter", at));
-        number *= bare ? 1 : 1.125;
+        number = (float)number * (bare ? 1 : 1.125f); /* as exact as PrusaSlicer has it */
     } else {
         number = written;
     }
