@@ -473,6 +473,11 @@ static void test_refuses_nonsense(void) {
     options = bare(ISO_PATTERN_GYROID, 0.2, 0);
     options.z = -1;
     CHECK_STATUS(ISO_USAGE, iso_fill(&paths, &region, &options, NULL, NULL));
+    options = bare(ISO_PATTERN_GYROID, 0.2, 0);
+    options.spacing = ISO_FILL_SPACING_MIN / 2 + 50; /* a hundred million turns */
+    add_circle(&region, 0, 0, 800, 100, 0, -1);
+    CHECK_STATUS(ISO_USAGE, iso_fill(&paths, &region, &options, NULL, NULL));
+    CHECK(strstr(iso_error_message(), "too fine"));
     CHECK_EQUAL(0, paths.count);
     iso_paths_free(&paths);
     drop_region(&region);

@@ -61,6 +61,20 @@ static draw_curves *curves_of(iso_fill_pattern pattern) {
     }
 }
 
+/* A pattern that would have more than so many turns of a line is a mistake, not a print. */
+#define TURNS_MAX 1e8
+
+static iso_status check_size(const iso_clip *clip, const iso_fill_options *options) {
+    double min[2], max[2];
+    iso_clip_extent(min, max, clip);
+    double turns = (max[0] - min[0]) / options->spacing * ((max[1] - min[1]) / options->spacing);
+    if (turns <= TURNS_MAX)
+        return ISO_OK;
+    return iso_fail(ISO_USAGE, "fill: a spacing of %g mm is too fine for %g x %g mm",
+                    options->spacing / ISO_UNITS_PER_MM, (max[0] - min[0]) / ISO_UNITS_PER_MM,
+                    (max[1] - min[1]) / ISO_UNITS_PER_MM);
+}
+
 static iso_status fill_curves(iso_paths *out, const iso_region *region,
                               const iso_fill_options *options, iso_arena *scratch) {
     iso_clip clip;
@@ -68,6 +82,7 @@ static iso_status fill_curves(iso_paths *out, const iso_region *region,
     iso_fill_pattern pattern = (iso_fill_pattern)options->pattern;
     double angle = options->angle + iso_pattern_frame(pattern);
     ISO_TRY(iso_clip_begin(&clip, region, angle, options->origin, scratch));
+    ISO_TRY(check_size(&clip, options));
     curves_of(pattern)(&clip, options);
     ISO_TRY(iso_clip_end(&weave, &clip));
 #ifndef NDEBUG
