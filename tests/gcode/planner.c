@@ -86,6 +86,8 @@ static double plan_whole(const iso_planner_move *m, int n) {
             limit = 0;
         else if (dot < 0.999999)
             limit = fmin(limit, sqrt(acceleration * deviation * half / (1 - half)));
+        if (m[i].length < 1 && dot > sqrt(0.5) && dot < 1) /* chords of a curve */
+            limit = fmin(limit, sqrt(acceleration * m[i].length / acos(dot)));
         v[i] = limit;
     }
     for (int i = n; i-- > 0;)
@@ -120,6 +122,89 @@ static void test_window_agrees_with_whole_view(void) {
     free(move);
 }
 
+/* A circle of short chords: the pull to its middle is the acceleration, v^2 = a r. */
+static void test_curve(void) {
+    enum { N = 4000 };
+    static iso_planner_move move[N];
+    double radius = 5, step = 2 * 3.14159265358979 * 20 / N; /* 20 rounds */
+    for (int i = 0; i < N; i++)
+        move[i] = along(radius * (cos((i + 1) * step) - cos(i * step)),
+                        radius * (sin((i + 1) * step) - sin(i * step)), 200);
+    double speed = sqrt(acceleration * radius), length = N * 2 * radius * sin(step / 2);
+    CHECK_NEAR(length / speed + speed / acceleration, time_of(move, N), 0.01 * length / speed);
+}
+
+static double jerk_time_of(const iso_planner_move *move, int count) {
+    static iso_planner planner;
+    iso_machine_limits limits = limits_of(0);
+    iso_planner_start(&planner, &limits);
+    for (int i = 0; i < count; i++)
+        iso_planner_add(&planner, &move[i]);
+    iso_planner_stop(&planner);
+    return planner.time;
+}
+
+/* From 10 mm/s at once, and down to it: 90 mm/s of ramp on each side. */
+static void test_jerk_at_the_ends(void) {
+    iso_planner_move move = along(100, 0, 100);
+    double ramp = 90 / acceleration, way = ramp * 55;
+    CHECK_NEAR(2 * ramp + (100 - 2 * way) / 100, jerk_time_of(&move, 1), 1e-12);
+    move = along(60, 80, 100); /* both axes: 10 / 0.8 mm/s */
+    ramp = 87.5 / acceleration, way = ramp * 56.25;
+    CHECK_NEAR(2 * ramp + (100 - 2 * way) / 100, jerk_time_of(&move, 1), 1e-12);
+    move = (iso_planner_move){.length = 2, .speed = 40, .acceleration = acceleration};
+    ramp = 37.5 / acceleration, way = ramp * 21.25;
+    CHECK_NEAR(2 * ramp + (2 - 2 * way) / 40, jerk_time_of(&move, 1), 1e-12);
+}
+
+/* Round a right corner each axis jumps by the whole speed: 10 mm/s. By 30 degrees at 15 mm/s the y
+ * axis jumps by 7.5 and the x axis by 2: nothing is lost. */
+static void test_jerk_at_corners(void) {
+    iso_planner_move right[2] = {along(20, 0, 50), along(0, 20, 50)};
+    double ramp = 40 / acceleration, way = ramp * 30;
+    CHECK_NEAR(2 * (2 * ramp + (20 - 2 * way) / 50), jerk_time_of(right, 2), 1e-12);
+    double c = cos(3.14159265358979 / 6);
+    iso_planner_move gentle[2] = {along(20, 0, 15), along(20 * c, 10, 15)};
+    double in = 5 / acceleration, last = 10 / c, out = (15 - last) / acceleration;
+    double cruise = 40 - in * 12.5 - out * (15 + last) / 2;
+    CHECK_NEAR(in + out + cruise / 15, jerk_time_of(gentle, 2), 1e-9);
+}
+
+/* The slowest axis decides: 12 mm/s up, 500 mm/s^2. */
+static void test_limits_of_axes(void) {
+    static iso_planner planner;
+    iso_machine_limits limits = {.feedrate = {60, 500, 12, 120},
+                                 .acceleration = {9000, 400, 500, 10000},
+                                 .junction_deviation = deviation};
+    iso_planner_move move[] = {{.dz = 12, .length = 12, .speed = 130, .acceleration = 1000},
+                               {.dx = 60, .length = 60, .speed = 130, .acceleration = 1000},
+                               {.dy = -50, .length = 50, .speed = 100, .acceleration = 1000}};
+    double expected[] = {1 + 12 / 500.0, 1 + 60 / 1000.0, 0.5 + 100 / 400.0};
+    for (int i = 0; i < 3; i++) {
+        iso_planner_start(&planner, &limits);
+        iso_planner_add(&planner, &move[i]);
+        iso_planner_stop(&planner);
+        CHECK_NEAR(expected[i], planner.time, 1e-12);
+    }
+}
+
+static void test_mark(void) {
+    static iso_planner planner;
+    iso_machine_limits limits = limits_of(deviation);
+    iso_planner_start(&planner, &limits);
+    double first = 0;
+    for (int i = 0; i < 1000; i++) {
+        iso_planner_move move = along(i % 2 ? -10 : 10, 0, 50); /* there and back: stops */
+        if (i == 100 || i == 800)
+            iso_planner_set_mark(&planner);
+        iso_planner_add(&planner, &move);
+        first = i == 0 ? time_of(&move, 1) : first;
+    }
+    iso_planner_stop(&planner);
+    CHECK_NEAR(1000 * first, planner.time, 1e-9);
+    CHECK_NEAR(800 * first, planner.mark_time, 1e-9);
+}
+
 static void test_nonsense_is_passed_over(void) {
     iso_planner_move move[2] = {{.length = 0, .speed = 10, .acceleration = 1000},
                                 {.length = 1, .speed = 0, .acceleration = 1000}};
@@ -132,6 +217,11 @@ int main(void) {
     RUN(test_corner);
     RUN(test_reversal_and_filament_stop);
     RUN(test_window_agrees_with_whole_view);
+    RUN(test_curve);
+    RUN(test_jerk_at_the_ends);
+    RUN(test_jerk_at_corners);
+    RUN(test_limits_of_axes);
+    RUN(test_mark);
     RUN(test_nonsense_is_passed_over);
     return check_verdict();
 }

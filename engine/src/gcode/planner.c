@@ -62,15 +62,36 @@ static void let_go(iso_planner *planner, int32_t count) {
 
 /* Square of the speed at which the corner's arc of the given deviation can be taken, but at most
  * `most`, which gentle corners reach without a division. */
-static double junction_squared(const iso_planner *planner, double x, double y, double z,
-                               double acceleration, double most) {
-    double cosine = -(planner->x * x + planner->y * y + planner->z * z);
-    int moved = planner->x != 0 || planner->y != 0 || planner->z != 0;
-    if (!moved || cosine > 0.999999 || (x == 0 && y == 0 && z == 0))
-        return 0;
+static double junction_squared(const iso_planner *planner, double cosine, double acceleration,
+                               double most) {
     double sine = cosine < -1 ? 1 : sqrt(0.5 * (1 - cosine));
     double reached = acceleration * planner->limits.junction_deviation * sine;
     return reached >= most * (1 - sine) ? most : reached / (1 - sine);
+}
+
+/* Chords of a curve, below 1 mm and 45 degrees: Marlin takes the curve's own radius, the chord
+ * divided by its turn. The turn is 2 asin(s), s the sine of its half, here by the asin's series. */
+static double curve_squared(double cosine, double length, double acceleration, double most) {
+    double q = cosine < -1 ? 0 : 0.5 * (1 + cosine); /* s^2 */
+    double pull = length * acceleration, bound = 4.3 * q;
+    if (pull * pull >= most * most * bound) /* the series is below 1.03 */
+        return most;
+    double series = 1 + q * (1. / 6 + q * (3. / 40 + q * (15. / 336)));
+    double squared = pull / (2 * series * sqrt(q));
+    return squared < most ? squared : most;
+}
+
+/* Square of the speed at which a block can be entered, at most `most`. */
+static double corner_squared(const iso_planner *planner, const double to[3], double length,
+                             double acceleration, double most) {
+    double cosine = -(planner->x * to[0] + planner->y * to[1] + planner->z * to[2]);
+    int moved = planner->x != 0 || planner->y != 0 || planner->z != 0;
+    if (!moved || cosine > 0.999999 || (to[0] == 0 && to[1] == 0 && to[2] == 0))
+        return 0;
+    double squared = junction_squared(planner, cosine, acceleration, most);
+    if (length < 1 && cosine < -0.70710678118654752)
+        squared = curve_squared(cosine, length, acceleration, squared);
+    return squared;
 }
 
 /* The most of `value` that keeps each axis within its limit. */
@@ -144,7 +165,8 @@ void iso_planner_add(iso_planner *planner, const iso_planner_move *move) {
     if (planner->classic_jerk)
         limit_by_jerk(planner, block, (const double[4]){x, y, z, filament}, slower);
     else
-        block->limit = junction_squared(planner, x, y, z, block->acceleration, slower * slower);
+        block->limit = corner_squared(planner, (const double[3]){x, y, z}, move->length,
+                                      block->acceleration, slower * slower);
     planner->count++;
     planner->x = x;
     planner->y = y;
