@@ -175,7 +175,8 @@ static double gap(const print *p, int32_t layer, int32_t expected) {
 static void split(const change *c) {
     CHECK(gap(c->a, 1, 2) < 5);
     CHECK(gap(c->b, 1, 2) > 5.99);
-    CHECK_NEAR(print_filament(c->a, -1, -1), print_filament(c->b, -1, -1), 0.05);
+    double whole = print_filament(c->a, -1, -1);
+    CHECK_NEAR(whole, print_filament(c->b, -1, -1), 1e-3 * whole);
 }
 
 static void duplicate(const change *c) {
@@ -221,6 +222,23 @@ static void arrange(const change *c) {
     CHECK_EQUAL(ISO_OUTSIDE, p.status);
     CHECK(strstr(p.message, "right.stl") || strstr(p.message, "left.stl"));
     print_free(&p);
+}
+
+static void make_aside(shape *s) {
+    shape_box(s, 31, 40, 0, 47, 52, 3);
+    shape_box(s, 60, 40, 0, 76, 52, 3);
+}
+
+static void dont_arrange(const change *c) {
+    const double place[4] = {31, 40, 76, 52};
+    double box[4];
+    outline(box, c->b, 1);
+    for (int i = 0; i < 4; i++)
+        CHECK_NEAR(place[i], box[i], 0.003);
+    outline(box, c->a, 1);
+    CHECK_NEAR(100, (box[0] + box[2]) / 2, 0.003);
+    CHECK_NEAR(13, gap(c->b, 1, 2), 0.003);
+    CHECK_NEAR(6, gap(c->a, 1, 2), 0.003);
 }
 
 static int32_t descents(const print *p) {
@@ -311,6 +329,7 @@ const option_row option_rows_objects[] = {
     {make_small, "duplicate_grid", "2,3", "", duplicate_grid},
     {make_small, "duplicate_distance", "17", "duplicate = 3", duplicate_distance},
     {make_small, "arrange", "1", "", arrange},
+    {make_aside, "dont_arrange", "1", "split = 1", dont_arrange},
     {make_small, "complete_objects", "1", "duplicate = 3", complete_objects},
     {make_block, "extruder_clearance_radius", "33", "complete_objects = 1\nduplicate = 2",
      extruder_clearance_radius},

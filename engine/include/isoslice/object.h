@@ -61,6 +61,7 @@ typedef struct iso_object {
     int32_t mesh_count;
     iso_mesh *mesh;    /* [mesh_count], owned; what they overlap in counts once */
     iso_vec3 min, max; /* of all of them: min.x = -max.x, min.y = -max.y, about */
+    iso_vec2 origin;   /* mm, where x = y = 0 was in the files */
     iso_region hull;   /* seen from above; empty until iso_objects_find_hulls */
 } iso_object;
 
@@ -106,6 +107,7 @@ typedef struct iso_instances {
 typedef struct iso_placing {
     const iso_vec2 *bed; /* [bed_count] mm, a polygon of any shape around the bed */
     int32_t bed_count;
+    bool keep;             /* single copies stay where the files have them, come what may */
     bool has_center;       /* else the middle of the bed's box */
     iso_vec2 center;       /* mm; where the middle of everything comes to lie if there is room */
     int32_t copies;        /* of each object; 0 counts as 1 */

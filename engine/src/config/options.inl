@@ -103,6 +103,9 @@ ISO_OPTION(duplicate_distance, NUMBER, "6", "mm", 0, 1000, "Objects",
 ISO_OPTION(
     arrange, BOOL, "0", "", 0, 1, "Objects",
     "Every model is an object of its own; find a place on the bed for each. Else models keep their places to each other.")
+ISO_OPTION(dont_arrange, BOOL, "0", "", 0, 1, "Objects",
+           "Leave objects where the model files have them on the bed, instead of centring or "
+           "arranging them. Copies are arranged all the same.")
 ISO_OPTION(complete_objects, BOOL, "0", "", 0, 1, "Objects",
            "Print one object after the other instead of all layer by layer.")
 ISO_OPTION(extruder_clearance_radius, NUMBER, "20", "mm", 0.1, 1000, "Objects",

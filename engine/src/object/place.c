@@ -155,11 +155,26 @@ static iso_status arrange(placer *p, int32_t copies) {
     return status;
 }
 
+static iso_status keep_places(placer *p) {
+    ISO_TRY(new_instances(p, 1));
+    for (int32_t i = 0; i < p->objects->count; i++) {
+        iso_vec2 at = p->objects->object[i].origin;
+        if (!within_kernel(at.x) || !within_kernel(at.y))
+            return iso_fail(ISO_OUTSIDE,
+                            "%s lies about (%g, %g) mm, beyond any bed; see dont_arrange",
+                            p->objects->object[i].name, at.x, at.y);
+        p->instances->instance[i].by = (iso_point){iso_units(at.x), iso_units(at.y)};
+    }
+    return ISO_OK;
+}
+
 static iso_status place(placer *p) {
     const iso_placing *placing = p->placing;
     int32_t copies = placing->copies > 1 ? placing->copies : 1;
     if (placing->columns > 0 && placing->rows > 0)
         return place_grid(p);
+    if (placing->keep && copies == 1)
+        return keep_places(p);
     if (p->objects->count > 1 || copies > 1)
         return arrange(p, copies);
     ISO_TRY(new_instances(p, 1));
