@@ -174,8 +174,18 @@ static void set_machine(fio_virtual_options *machine, const iso_options *options
     machine->travel_acceleration = options->machine_max_acceleration_travel;
     machine->retract_acceleration = options->machine_max_acceleration_retracting;
     machine->junction_deviation = options->machine_max_junction_deviation;
-    machine->maximum_feedrate[2] = options->machine_max_feedrate_z;
-    machine->maximum_acceleration[2] = 1e4;
+    const iso_options *o = options;
+    const double limits[4][3] = {
+        {o->machine_max_feedrate_x, o->machine_max_acceleration_x, o->machine_max_jerk_x},
+        {o->machine_max_feedrate_y, o->machine_max_acceleration_y, o->machine_max_jerk_y},
+        {o->machine_max_feedrate_z, o->machine_max_acceleration_z, o->machine_max_jerk_z},
+        {o->machine_max_feedrate_e, o->machine_max_acceleration_e, o->machine_max_jerk_e}};
+    for (int i = 0; i < 4; i++) {
+        machine->maximum_feedrate[i] = limits[i][0];
+        machine->maximum_acceleration[i] = limits[i][1];
+        machine->jerk[i] = limits[i][2];
+    }
+    machine->classic_jerk = o->gcode_flavor == ISO_FLAVOUR_MARLIN;
     machine->filament_diameter = options->filament_diameter;
     machine->maximum_flow = 1000;
 }

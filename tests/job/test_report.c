@@ -39,12 +39,17 @@ static void test_time(void) {
     static const char *const settings[] = {
         "", "retract_lift = 0.5\nperimeter_speed = 120\ncooling = 0",
         "machine_max_acceleration_extruding = 400\nmachine_max_acceleration_travel = 3000\n"
-        "machine_max_junction_deviation = 0.05\nfill_density = 60%\ncooling = 0"};
+        "machine_max_junction_deviation = 0.05\nfill_density = 60%\ncooling = 0",
+        "gcode_flavor = marlin\nmachine_limits_usage = emit_to_gcode\nretract_lift = 0.3\n"
+        "default_acceleration = 800\nperimeter_acceleration = 500\ntravel_speed = 250",
+        "default_acceleration = 900\nexternal_perimeter_acceleration = 300\n"
+        "first_layer_acceleration = 200\ntravel_acceleration = 600\ninfill_speed = 150\n"
+        "max_volumetric_speed = 6\nmachine_max_acceleration_x = 700\nmachine_max_feedrate_y = 70"};
     for (int m = 0; m < SOLID_COUNT; m++) {
         shape s = {0};
         print p;
         all_solids[m].make(&s);
-        print_shape(&p, &s, settings[m % 3]);
+        print_shape(&p, &s, settings[m % 5]);
         print_check(&p, &s);
         const double *time = p.machine.time;
         double taken =
