@@ -192,6 +192,16 @@ static iso_status spiral_step(iso_job *job, const iso_step *step, int32_t index,
     return ISO_OK;
 }
 
+/* Outlines may have been thinned, and joins of walls be off, by 0.4 of gcode_resolution each. */
+static iso_status find_arcs(iso_gcode_layer_info *info, const iso_job *job, iso_arena *arena) {
+    iso_arc_options options = iso_arc_defaults();
+    iso_arc *arc;
+    options.tolerance = 0.5 * job->options->gcode_resolution * ISO_UNITS_PER_MM;
+    ISO_TRY(iso_paths_find_arcs(&arc, &info->arc_count, &job->ordered, &options, arena));
+    info->arc = arc;
+    return ISO_OK;
+}
+
 static iso_status write_step(iso_job *job, const iso_step *step, int32_t index) {
     iso_point from = job->position;
     ISO_TRY(make_layers(job, step));
@@ -200,11 +210,17 @@ static iso_status write_step(iso_job *job, const iso_step *step, int32_t index) 
     double begun = iso_stage_clock();
     if (job->ordered.count == 0 && job->empty++ == 0)
         job->lowest_empty = iso_mm(step->z);
+    iso_arena *arena = &job->crew.hand[0].arena;
+    iso_arena_mark mark = iso_arena_get_mark(arena);
     iso_gcode_layer_info info = {.index = index,
                                  .z = step->z + iso_units(job->options->z_offset),
                                  .height = step->height,
                                  .paths = &job->ordered};
-    ISO_TRY(iso_gcode_layer(job->writer, &info));
+    if (job->options->arc_fitting != ISO_ARCS_DISABLED)
+        ISO_TRY(find_arcs(&info, job, arena));
+    iso_status status = iso_gcode_layer(job->writer, &info);
+    iso_arena_pop(arena, mark);
+    ISO_TRY(status);
     job->seconds[ISO_STAGE_WRITE] += iso_stage_clock() - begun;
     for (int32_t i = 0; i < job->plate.objects.count; i++)
         job->next[i] += takes_part(job, step, i);

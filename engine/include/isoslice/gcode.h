@@ -108,6 +108,10 @@ typedef struct iso_gcode_options {
     double retract_length, retract_speed;
     double deretract_speed; /* 0: retract_speed */
     double retract_restart_extra, retract_before_travel, retract_lift;
+    double retract_lift_above, retract_lift_below; /* z; below 0: no limit */
+    int retract_layer_change;
+    int wipe;                   /* while the filament is drawn back; not by the firmware */
+    double retract_before_wipe; /* share of retract_length, 0 to 1 */
 
     int temperature, first_layer_temperature; /* 0: say nothing */
     int bed_temperature, first_layer_bed_temperature;

@@ -124,6 +124,11 @@ static void set_filament(iso_gcode_options *g, const iso_options *options) {
     g->retract_restart_extra = options->retract_restart_extra;
     g->retract_before_travel = options->retract_before_travel;
     g->retract_lift = options->retract_lift;
+    g->retract_lift_above = options->retract_lift_above;
+    g->retract_lift_below = options->retract_lift_below;
+    g->retract_layer_change = options->retract_layer_change;
+    g->wipe = options->wipe;
+    g->retract_before_wipe = options->retract_before_wipe / 100;
 }
 
 static void set_texts(iso_gcode_options *g, const iso_options *options, const iso_texts *texts) {

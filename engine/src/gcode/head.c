@@ -1,11 +1,15 @@
 #include "gcode/head.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "gcode/number.h"
 
 static const double pi = 3.14159265358979323846;
+
+/* A wipe is this much slower than travel. */
+#define WIPE_PACE 0.8
 
 enum { E_DECIMALS = 100000, UNKNOWN = ISO_HEAD_UNKNOWN };
 
@@ -62,6 +66,9 @@ void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *o
     head->travel_acceleration = travel_acceleration(head);
     head->above = UNKNOWN;
     head->lift = iso_units(o->retract_lift);
+    if (o->wipe && !o->use_firmware_retraction && o->retract_speed > 0)
+        head->wipe_length = (1 - o->retract_before_wipe) * o->retract_length / o->retract_speed *
+                            WIPE_PACE * o->travel_speed * ISO_UNITS_PER_MM;
     head->role = head->width = UNKNOWN;
     iso_head_forget_place(head);
 }
@@ -143,6 +150,25 @@ static void move_filament(iso_head *head, int64_t e, int32_t feed, const char *c
 }
 
 /* The firmware's own: how far and how fast is its affair, and taken to be as here. */
+static void put_comment_line(iso_head *head, const char *text) {
+    iso_lines_accept(head->lines, iso_put_text(iso_lines_reserve(head->lines), text));
+}
+
+/* In the plane, with so much filament drawn back. */
+static void move_wiping(iso_head *head, int32_t x, int32_t y, int64_t e, int32_t feed) {
+    char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1 X");
+    p = iso_put_thousandths(p, x);
+    p = ISO_PUT(p, " Y");
+    p = iso_put_thousandths(p, y);
+    if (e != 0)
+        p = put_e(head, p, -e);
+    p = put_feed(head, p, feed);
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, "wipe and retract"));
+    plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
+    head->x = x;
+    head->y = y;
+}
+
 static void move_filament_by_firmware(iso_head *head, const char *command, int64_t e, int32_t feed,
                                       const char *comment) {
     double speed = head->speed;
@@ -150,6 +176,44 @@ static void move_filament_by_firmware(iso_head *head, const char *command, int64
     head->speed = feed / 60.0;
     plan_filament(head, e);
     head->speed = speed;
+}
+
+/* Along the path just printed, drawing the filament back as evenly as the way is long. Returns what
+ * is left to draw. */
+static int64_t wipe(iso_head *head, int64_t e) {
+    const iso_wipe *way = &head->wipe;
+    int32_t feed = iso_head_feed(WIPE_PACE * head->options->travel_speed);
+    double reached = 0;
+    int64_t drawn = 0;
+    put_comment_line(head, ";WIPE_START\n");
+    for (int32_t i = 0; i < way->count && reached < head->wipe_length; i++) {
+        int32_t x = to_micrometres(way->point[i].x), y = to_micrometres(way->point[i].y);
+        double dx = x - head->x, dy = y - head->y, length = 10 * sqrt(dx * dx + dy * dy);
+        double rest = head->wipe_length - reached;
+        if (length == 0)
+            continue;
+        if (length > rest) {
+            x = head->x + (int32_t)floor(dx * rest / length + 0.5);
+            y = head->y + (int32_t)floor(dy * rest / length + 0.5);
+        }
+        reached += length;
+        int64_t due =
+            reached < head->wipe_length ? (int64_t)((double)e * reached / head->wipe_length) : e;
+        move_wiping(head, x, y, due - drawn, feed);
+        drawn = due;
+    }
+    put_comment_line(head, ";WIPE_END\n");
+    return e - drawn;
+}
+
+/* With a wipe, part of it may come before, and the rest of a short way after. */
+static void retract_wiping(iso_head *head) {
+    int64_t before = (int64_t)((double)head->retract_e * head->options->retract_before_wipe);
+    if (before > 0)
+        move_filament(head, -before, head->retract_feed, "retract");
+    int64_t rest = wipe(head, head->retract_e - before);
+    if (rest > 0)
+        move_filament(head, -rest, head->retract_feed, "retract");
 }
 
 void iso_head_retract(iso_head *head) {
@@ -161,8 +225,11 @@ void iso_head_retract(iso_head *head) {
     if (head->options->use_firmware_retraction)
         move_filament_by_firmware(head, words->retract, -head->retract_e, head->retract_feed,
                                   "retract");
+    else if (head->wipe_length > 0 && head->wipe.count > 0 && head->x != UNKNOWN)
+        retract_wiping(head);
     else
         move_filament(head, -head->retract_e, head->retract_feed, "retract");
+    head->wipe.count = 0;
     iso_modes_say(&head->modes, words->retracted, 0, "extruder off");
 }
 
@@ -191,9 +258,18 @@ static void move_z(iso_head *head, int32_t z, const char *comment) {
     head->z = z;
 }
 
+/* How far the nozzle rises on its way, at this height. */
+static int32_t lift_of(const iso_head *head) {
+    const iso_gcode_options *o = head->options;
+    double z = iso_mm(head->layer_z);
+    bool here =
+        z >= o->retract_lift_above && (!(o->retract_lift_below > 0) || z <= o->retract_lift_below);
+    return head->retracted && here ? head->lift : 0;
+}
+
 void iso_head_reach_layer(iso_head *head) {
     if (head->above == UNKNOWN)
-        move_z(head, head->layer_z + (head->retracted ? head->lift : 0), "to the layer");
+        move_z(head, head->layer_z + lift_of(head), "to the layer");
 }
 
 void iso_head_rise_above(iso_head *head, int32_t z) {
@@ -248,7 +324,7 @@ static void travel(iso_head *head, const iso_path *path, const iso_point *way, i
         iso_head_retract(head);
     if (away) {
         int32_t low = z > head->layer_z ? z : head->layer_z;
-        int32_t high = head->retracted ? low + head->lift : low;
+        int32_t high = low + lift_of(head);
         move_z(head, head->above > high ? head->above : high, "lift");
         iso_modes_accelerate_travel(&head->modes, head->travel_acceleration);
         for (int32_t i = 0; known && i < path->travel_count; i++)
@@ -351,6 +427,52 @@ static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point 
     head->z = z;
 }
 
+/* A run of beads in one move: as far as they reach, along the circle they lie on. The planner gets
+ * them one by one, as a firmware cuts the arc up again. */
+static void draw_arc(iso_head *head, const iso_arc *arc, const iso_path *path,
+                     const iso_path_vertex *vertex, int32_t feed) {
+    const iso_path_vertex *from = &vertex[arc->first];
+    double length = 0;
+    for (int32_t i = 0; i < arc->count; i++) {
+        int32_t a = (arc->first + i) % path->count, b = (a + 1) % path->count;
+        double dx = (double)vertex[b].at.x - vertex[a].at.x;
+        double dy = (double)vertex[b].at.y - vertex[a].at.y, chord = sqrt(dx * dx + dy * dy);
+        length += chord * (1 + chord * chord / (24 * arc->radius * arc->radius));
+        head->speed = feed / 60.0;
+        plan(head, dx / ISO_UNITS_PER_MM, dy / ISO_UNITS_PER_MM, 0, 1);
+    }
+    head->moves -= arc->count - 1;
+    head->drawn += (int64_t)(length * from->area * head->e_scale + 0.5);
+    iso_point to = vertex[(arc->first + arc->count) % path->count].at;
+    int32_t x = to_micrometres(to.x), y = to_micrometres(to.y);
+    char *p = iso_lines_reserve(head->lines);
+    if (from->width != head->width || from->area != head->area)
+        p = put_bead(head, p, from);
+    p = arc->clockwise ? ISO_PUT(p, "G2 X") : ISO_PUT(p, "G3 X");
+    p = iso_put_thousandths(p, x);
+    p = iso_put_thousandths(ISO_PUT(p, " Y"), y);
+    p = iso_put_thousandths(ISO_PUT(p, " I"), (int32_t)floor(arc->center.x / 10 - head->x + 0.5));
+    p = iso_put_thousandths(ISO_PUT(p, " J"), (int32_t)floor(arc->center.y / 10 - head->y + 0.5));
+    int64_t e = (head->drawn + ((int64_t)1 << (E_FRACTION - 1))) >> E_FRACTION;
+    if (e != head->emitted)
+        p = put_e(head, p, e - head->emitted);
+    head->emitted = e;
+    p = put_feed(head, p, feed);
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment_of(head->role)));
+    head->x = x;
+    head->y = y;
+}
+
+/* The arc that begins at vertex i of the path, if there is one. */
+static const iso_arc *take_arc(iso_head *head, int32_t path, int32_t i) {
+    while (head->arc < head->arc_end &&
+           (head->arc->path < path || (head->arc->path == path && head->arc->first < i)))
+        head->arc++;
+    if (head->arc == head->arc_end || head->arc->path != path || head->arc->first != i)
+        return NULL;
+    return head->arc++;
+}
+
 void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
                    const double *length, const iso_layer_pace *pace) {
     const iso_path_vertex *vertex = paths->vertex + path->first;
@@ -372,6 +494,14 @@ void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
             begin_piece(head, role, pace);
         }
         int32_t own = from->area > most ? iso_pace_limited_feed(pace, slot, from->area) : feed;
-        draw_segment(head, from, to->at, head->layer_z + to->z, length[i], own);
+        const iso_arc *arc = take_arc(head, (int32_t)(path - paths->path), i);
+        if (!arc) {
+            draw_segment(head, from, to->at, head->layer_z + to->z, length[i], own);
+            continue;
+        }
+        draw_arc(head, arc, path, vertex, own);
+        i += arc->count - 1;
     }
+    if (head->wipe_length > 0)
+        iso_wipe_remember(&head->wipe, path, vertex, head->wipe_length);
 }

@@ -3,6 +3,7 @@
 #ifndef ISO_GCODE_HEAD_H
 #define ISO_GCODE_HEAD_H
 
+#include <isoslice/arc.h>
 #include <isoslice/gcode.h>
 #include <isoslice/path.h>
 
@@ -10,6 +11,7 @@
 #include "gcode/lines.h"
 #include "gcode/modes.h"
 #include "gcode/planner.h"
+#include "gcode/wipe.h"
 
 enum { ISO_HEAD_UNKNOWN = INT32_MIN };
 
@@ -38,6 +40,9 @@ typedef struct iso_head {
     int32_t area;                /* of the bead last drawn */
     int32_t layer_height;        /* units */
     int retracted;
+    const iso_arc *arc, *arc_end; /* of the layer, those to come */
+    iso_wipe wipe;                /* of the path last drawn, if it is asked for */
+    double wipe_length;           /* units: of a whole wipe; 0: none */
 
     double bead_mm, travel_mm;
     int64_t moves, retractions;

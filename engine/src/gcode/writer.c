@@ -164,10 +164,14 @@ static iso_status begin_layer(iso_gcode_writer *w, const iso_gcode_layer_info *l
     w->place.layer = layer->index;
     w->place.z = iso_mm(top);
     w->place.max_z = iso_mm(w->highest - iso_units(w->options.z_offset));
+    if (w->options.retract_layer_change && w->layers > 0)
+        iso_head_retract(&w->head);
     ISO_TRY(put_text(w, ISO_TEXT_BEFORE_LAYER));
     if (w->words->reset_e)
         put_line(w, w->words->reset_e);
     iso_head_begin_layer(&w->head, layer->z, layer->height);
+    w->head.arc = layer->arc;
+    w->head.arc_end = layer->arc + layer->arc_count;
     return put_layer_text(w);
 }
 

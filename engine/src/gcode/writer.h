@@ -11,6 +11,7 @@
 #ifndef ISO_GCODE_WRITER_H
 #define ISO_GCODE_WRITER_H
 
+#include <isoslice/arc.h>
 #include <isoslice/gcode.h>
 #include <isoslice/path.h>
 
@@ -22,6 +23,8 @@ typedef struct iso_gcode_layer_info {
     int32_t index;          /* 0 on the bed */
     int32_t z, height;      /* units: its top, z_offset included, and how high it is */
     const iso_paths *paths; /* in printing order (iso_order_layer) */
+    const iso_arc *arc;     /* [arc_count] of them (iso_paths_find_arcs) */
+    int32_t arc_count;
 } iso_gcode_layer_info;
 
 /* Writes the lines of the config block, each "; key = value\n". */
