@@ -119,6 +119,23 @@ static void test_empty_numbers_and_comments_behind_numbers(void) {
     CHECK(strcmp(notes.unused, "retract_speed = , bed_shape = ") == 0);
 }
 
+static void test_words_of_older_versions(void) {
+    CHECK_OK(read_ini("gcode_label_objects = 1\ndraft_shield = 1\n"));
+    CHECK_EQUAL(ISO_LABELS_OCTOPRINT, options.gcode_label_objects);
+    CHECK_EQUAL(ISO_SHIELD_ENABLED, options.draft_shield);
+    CHECK_OK(read_ini("gcode_label_objects = 0\ndraft_shield = 0\nprint_host = 10.0.0.1\n"));
+    CHECK_EQUAL(ISO_LABELS_DISABLED, options.gcode_label_objects);
+    CHECK_EQUAL(ISO_SHIELD_DISABLED, options.draft_shield);
+    CHECK_EQUAL(0, notes.unused_count + notes.unknown_count);
+}
+
+static void test_the_nearest_section_is_told(void) {
+    CHECK_STATUS(ISO_BAD_CONFIG, read_with(":print:0.2mm FAST", ".ini",
+                                           "[print:0.1mm FINE]\nlayer_height = 0.1\n"
+                                           "[print:0.20mm FAST]\nlayer_height = 0.2\n"));
+    CHECK(strstr(iso_error_message(), "is it [print:0.20mm FAST]?") != NULL);
+}
+
 static void test_the_filament_has_its_say_over_retraction(void) {
     CHECK_OK(read_ini("filament_retract_length = 1.5,2\nretract_length = 3\nretract_lift = 0.4\n"
                       "filament_retract_lift = nil\nfilament_wipe = 1\n"));
@@ -337,6 +354,8 @@ int main(void) {
     RUN(test_foreign_values_are_bounded);
     RUN(test_quoted_texts_of_filaments_are_unquoted);
     RUN(test_empty_numbers_and_comments_behind_numbers);
+    RUN(test_words_of_older_versions);
+    RUN(test_the_nearest_section_is_told);
     RUN(test_the_filament_has_its_say_over_retraction);
     RUN(test_presets_names_are_kept);
     RUN(test_a_word_that_is_replaced_later_is_not_noted);

@@ -8,6 +8,7 @@
 #include "config/foreign.h"
 #include "config/ini.h"
 #include "config/notes.h"
+#include "config/spelling.h"
 #include "config/value.h"
 #include "macro/macro.h"
 
@@ -43,7 +44,11 @@ static bool is_description(const char *key) {
                                        "_type",    "_colour",   "_settings_id",  "_profile",
                                        "_texture", "_id",       "_spool_weight", "_condition",
                                        "_prints",  "_printers", "_technology"};
-    static const char *const whole[] = {"notes", "inherits", "renamed_from", "prusaslicer_config"};
+    static const char *const whole[] = {
+        "notes", "inherits", "renamed_from", "prusaslicer_config", "print_host", "host_type"};
+    if (strncmp(key, "octoprint_", 10) == 0 || strncmp(key, "printhost_", 10) == 0 ||
+        strncmp(key, "serial_", 7) == 0)
+        return true; /* of the connection */
     size_t length = strlen(key);
     for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
         if (strcmp(key, whole[i]) == 0)
@@ -96,7 +101,20 @@ static iso_status apply_value(reader *from, int32_t option, const char *value, i
                            first_value(first, sizeof first, option, value), where);
 }
 
-static iso_status apply_line(reader *from, const iso_ini_line *line) {
+/* Words that older versions of PrusaSlicer had as 0 and 1. */
+static const char *todays_word(const char *key, const char *value) {
+    static const char *const words[][3] = {{"gcode_label_objects", "disabled", "octoprint"},
+                                           {"draft_shield", "disabled", "enabled"}};
+    bool is_one = strcmp(value, "1") == 0;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (strcmp(key, words[i][0]) == 0 && (is_one || strcmp(value, "0") == 0))
+            return words[i][1 + is_one];
+    return value;
+}
+
+static iso_status apply_line(reader *from, const iso_ini_line *given) {
+    const iso_ini_line today = {given->key, todays_word(given->key, given->value), given->number};
+    const iso_ini_line *line = &today;
     int32_t option = iso_option_find(line->key);
     if (option < 0) {
         note_foreign(from, line->key, line->value);
@@ -201,9 +219,31 @@ static void list_choices(char *names, size_t size, const reader *from, const cha
     }
 }
 
+/* The section whose name is nearest to a missing one; NULL if none is near. */
+static const char *nearest_section(const reader *from, const char *missing, const char *type) {
+    const char *nearest = NULL;
+    size_t prefix = strlen(type) + 1;
+    int best = (int)(strlen(missing) - prefix) / 2;
+    for (int32_t i = 1; i < from->ini.section_count; i++) {
+        const char *name = from->ini.section[i].name;
+        if (!may_choose(name, type))
+            continue;
+        int distance = iso_edit_distance(name + prefix, missing + prefix);
+        if (distance < best) {
+            best = distance;
+            nearest = name;
+        }
+    }
+    return nearest;
+}
+
 static iso_status fail_choice(const reader *from, const char *missing, const char *type) {
     char names[512];
     list_choices(names, sizeof names, from, type);
+    const char *near = missing ? nearest_section(from, missing, type) : NULL;
+    if (near)
+        return iso_fail(ISO_BAD_CONFIG, "%s: has no section [%s]; is it [%s]? It has %s",
+                        from->path, missing, near, names);
     if (missing)
         return iso_fail(ISO_BAD_CONFIG, "%s: has no section [%s]; it has %s", from->path, missing,
                         names);
