@@ -428,6 +428,47 @@ static void test_links_are_no_longer_than_allowed(void) {
     iso_arena_free(&scratch);
 }
 
+/* Lines 5 mm apart that no link may join: each end runs on along the wall, and keeps a bead's width
+ * from what comes the other way. */
+static void test_anchors(void) {
+    static const iso_point corner[] = {{0, 0}, {400000, 0}, {400000, 215000}, {0, 215000}};
+    iso_arena scratch = {0};
+    for (int anchor = 0; anchor <= 40000; anchor += 5000) {
+        iso_region region = {0};
+        iso_paths paths = {0};
+        add_points(&region, corner, 4, -1);
+        iso_fill_options options = bare_options(50000, 0, 0);
+        options.phase = 7000;
+        options.link_max = 30000;
+        options.anchor = anchor;
+        CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
+        CHECK_EQUAL(5, paths.count);
+        double hooks = 0, low[10], high[10];
+        int left = 0;
+        for (int i = 0; i < paths.count; i++)
+            for (int k = 0; k + 1 < paths.path[i].count; k++) {
+                iso_point a = paths.vertex[paths.path[i].first + k].at;
+                iso_point b = paths.vertex[paths.path[i].first + k + 1].at;
+                hooks += bead_length(&paths, i, k);
+                if (a.x > 1 || b.x > 1)
+                    continue;
+                low[left] = fmin(a.y, b.y);
+                high[left++] = fmax(a.y, b.y);
+            }
+        hooks -= 5 * 400000;
+        if (anchor <= 20000)
+            CHECK_NEAR(10 * anchor, hooks, 20);
+        else
+            CHECK(hooks > 10 * 20000 && hooks < 10 * fmin(anchor, 30000) + 20);
+        for (int i = 0; i < left; i++)
+            for (int k = 0; k < left; k++)
+                CHECK(i == k || high[i] <= low[k] - 4490 || low[i] >= high[k] + 4490);
+        iso_paths_free(&paths);
+        drop_region(&region);
+    }
+    iso_arena_free(&scratch);
+}
+
 /* The same contours, begun elsewhere, are the same region and give the same paths. */
 static void test_starts_of_contours_do_not_matter(void) {
     iso_arena scratch = {0};
@@ -567,6 +608,7 @@ int main(void) {
     RUN(test_few_travels);
     RUN(test_monotonic_order);
     RUN(test_links_are_no_longer_than_allowed);
+    RUN(test_anchors);
     RUN(test_starts_of_contours_do_not_matter);
     RUN(test_little_regions);
     RUN(test_refusals);

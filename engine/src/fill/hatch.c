@@ -198,25 +198,80 @@ iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const is
     return ISO_OK;
 }
 
-int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart, double longest) {
+/* On the way along an arc, edge by edge. */
+typedef struct arc_walk {
+    const iso_region *region;
+    int32_t from, to; /* of the contour */
+    int32_t edge, last;
+    int forward;
+    iso_point end;
+} arc_walk;
+
+static arc_walk walk_from(const iso_hatch *hatch, int32_t dart) {
     int32_t c = dart >> 1, d = hatch->link.arc[dart] >> 1;
-    iso_point here = hatch->crossing[c].at, end = hatch->crossing[d].at;
-    if (iso_hatch_distance(here, end) > longest)
-        return -1;
     const iso_region *region = hatch->part.region;
     int32_t contour = hatch->part.member[hatch->link.contour[c]];
-    int32_t from = region->first[contour], to = region->first[contour + 1];
-    int32_t i = hatch->crossing[c].edge >> 1, last = hatch->crossing[d].edge >> 1, count = 0;
-    int forward = (dart & 1) == (hatch->crossing[c].edge & 1);
+    return (arc_walk){.region = region,
+                      .from = region->first[contour],
+                      .to = region->first[contour + 1],
+                      .edge = hatch->crossing[c].edge >> 1,
+                      .last = hatch->crossing[d].edge >> 1,
+                      .forward = (dart & 1) == (hatch->crossing[c].edge & 1),
+                      .end = hatch->crossing[d].at};
+}
+
+/* The next point: a corner, returns 1; or the end of the arc, returns 0. */
+static int walk_on(arc_walk *walk, iso_point *passed) {
+    if (walk->edge == walk->last) {
+        *passed = walk->end;
+        return 0;
+    }
+    int32_t i = walk->edge, next;
+    if (walk->forward)
+        next = i + 1 < walk->to ? i + 1 : walk->from;
+    else
+        next = (i > walk->from ? i : walk->to) - 1;
+    /* edge i begins at point i, so backward its own point comes first */
+    *passed = walk->region->point[walk->forward ? next : i];
+    walk->edge = next;
+    return 1;
+}
+
+int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart, double longest) {
+    arc_walk walk = walk_from(hatch, dart);
+    iso_point here = hatch->crossing[dart >> 1].at, passed;
+    if (iso_hatch_distance(here, walk.end) > longest)
+        return -1;
+    int32_t count = 0;
     double length = 0;
-    while (i != last) { /* edge i begins at point i, so backward its own point comes first */
-        int32_t next = forward ? (i + 1 < to ? i + 1 : from) : (i > from ? i : to) - 1;
-        iso_point passed = region->point[forward ? next : i];
+    for (int more = 1; more; here = passed) {
+        more = walk_on(&walk, &passed);
         length += iso_hatch_distance(here, passed);
         if (length > longest)
             return -1;
-        here = point[count++] = passed;
-        i = next;
+        if (more)
+            point[count++] = passed;
     }
-    return length + iso_hatch_distance(here, end) > longest ? -1 : count;
+    return count;
+}
+
+int32_t iso_hatch_follow_for(iso_point *point, const iso_hatch *hatch, int32_t dart,
+                             double *length) {
+    arc_walk walk = walk_from(hatch, dart);
+    iso_point here = hatch->crossing[dart >> 1].at, passed;
+    int32_t count = 0;
+    double followed = 0;
+    for (int more = 1; more && followed < *length; here = passed) {
+        more = walk_on(&walk, &passed);
+        double step = iso_hatch_distance(here, passed), left = *length - followed;
+        if (step > left) {
+            passed.x = here.x + to_nearest((passed.x - here.x) * (left / step));
+            passed.y = here.y + to_nearest((passed.y - here.y) * (left / step));
+            step = left;
+        }
+        followed += step;
+        point[count++] = passed;
+    }
+    *length = followed;
+    return count;
 }

@@ -49,4 +49,10 @@ iso_status iso_hatch_build(iso_hatch *hatch, const iso_fill_part *part, const is
  * (room for the part's points). Returns how many, or -1 if the arc is longer than `longest`. */
 int32_t iso_hatch_follow(iso_point *point, const iso_hatch *hatch, int32_t dart, double longest);
 
+/* Follow the arc from `dart` for `length` units, or to its end if that is nearer: the points passed
+ * and the one reached, to `point` (room for the part's points and one more). Returns how many.
+ * `length` becomes what was followed. */
+int32_t iso_hatch_follow_for(iso_point *point, const iso_hatch *hatch, int32_t dart,
+                             double *length);
+
 #endif

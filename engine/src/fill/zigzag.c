@@ -30,6 +30,7 @@ typedef struct zigzag {
     int32_t end[2];   /* darts at which its first and last line end, if no link or anchor does */
     int32_t *cell;    /* monotonic: of each dart */
     int32_t *waiting; /* monotonic: of each cell, segments below it that are not drawn */
+    double *anchored; /* with anchors: of each dart, how much of its arc is drawn from there */
 } zigzag;
 
 static void draw_to(zigzag *run, iso_point to, bead with) {
@@ -221,7 +222,8 @@ static int is_short(const zigzag *run) {
 static iso_point drawn_out(const zigzag *run, iso_point end, int32_t dart) {
     double margin = run->options->margin, overlap = run->options->spacing / 2 - margin;
     double by = margin < overlap ? margin : overlap;
-    if (!run->options->fit || by <= 0 || is_slope(run, dart) || is_slope(run, dart ^ 1))
+    if (!run->options->fit || run->anchored || by <= 0 || is_slope(run, dart) ||
+        is_slope(run, dart ^ 1))
         return end;
     return moved_end(run, dart, by, REACH_MOST * by);
 }
@@ -242,6 +244,34 @@ static iso_status add_run(iso_paths *out, zigzag *run) {
     return ISO_OK;
 }
 
+/* The run's end leads nowhere: along the boundary for a while, where there is most room. Links draw
+ * an arc only from both of its ends, so there are anchors alone to be mindful of. */
+static void draw_anchor(zigzag *run) {
+    const iso_fill_options *options = run->options;
+    double most = options->anchor < options->link_max ? options->anchor : options->link_max;
+    double best_length = 0;
+    int32_t best = -1;
+    if (!run->anchored || most <= 0)
+        return;
+    iso_point *arc = run->point + run->count;
+    for (int other = 0; other < 2; other++) {
+        int32_t dart = run->end[1] ^ other;
+        double taken = run->anchored[run->hatch->link.arc[dart]] + options->width;
+        double length = most + taken;
+        (void)iso_hatch_follow_for(arc, run->hatch, dart, &length);
+        if (length - taken > best_length) {
+            best_length = length - taken;
+            best = dart;
+        }
+    }
+    if (best < 0 || best_length < options->width)
+        return;
+    int32_t count = iso_hatch_follow_for(arc, run->hatch, best, &best_length);
+    run->anchored[best] = best_length;
+    for (int32_t i = 0; i < count; i++)
+        draw_to(run, arc[i], run->line);
+}
+
 /* Segments in the order of the lines: what is left lowest has nothing left below, so that a run
  * that starts there does not cut a column in two. */
 static iso_status draw_all(iso_paths *out, zigzag *run) {
@@ -258,16 +288,16 @@ static iso_status draw_all(iso_paths *out, zigzag *run) {
         run->count = 0;
         run->end[0] = start;
         draw_on(run, start);
+        draw_anchor(run);
         at = run->point[run->count - 1];
-        if (!run->waiting) {
-            turn_round(run); /* and on from the other end, if it leads anywhere */
-            int32_t back = draw_next(run, start);
-            draw_on(run, back);
-            if (back < 0)
-                turn_round(run);
-            else
-                at = run->point[run->count - 1];
-        }
+        turn_round(run); /* and on from the other end, if it leads anywhere */
+        int32_t back = run->waiting ? -1 : draw_next(run, start);
+        draw_on(run, back);
+        draw_anchor(run);
+        if (back < 0)
+            turn_round(run);
+        else
+            at = run->point[run->count - 1];
         ISO_TRY(add_run(out, run));
     }
     return ISO_OK;
@@ -301,7 +331,8 @@ iso_status iso_zigzag_draw(iso_paths *out, const iso_hatch *hatch, iso_flanks *f
     const iso_fill_part *part = &hatch->part;
     zigzag run = {.hatch = hatch, .options = options, .flanks = flanks};
     run.line = (bead){flanks->usual.width, flanks->usual.area};
-    int64_t points = 2 + hatch->link.count + flanks->pieces;
+    int64_t darts = 2 * (int64_t)hatch->link.count;
+    int64_t points = 4 + hatch->link.count + flanks->pieces + (options->anchor > 0 ? darts : 0);
     for (int32_t m = 0; m < part->count; m++)
         points += part->region->first[part->member[m] + 1] - part->region->first[part->member[m]];
     ISO_TRY(ISO_PUSH(run.point, scratch, points));
@@ -310,5 +341,9 @@ iso_status iso_zigzag_draw(iso_paths *out, const iso_hatch *hatch, iso_flanks *f
     memset(run.drawn, 0, (size_t)hatch->link.count / 2);
     if (options->monotonic)
         ISO_TRY(find_cells(&run, scratch));
+    if (options->anchor > 0) {
+        ISO_TRY(ISO_PUSH(run.anchored, scratch, darts));
+        memset(run.anchored, 0, (size_t)darts * sizeof *run.anchored);
+    }
     return draw_all(out, &run);
 }
