@@ -169,6 +169,8 @@ iso_status iso_options_check(const iso_options *options) {
         return iso_fail(ISO_BAD_CONFIG, "min_fan_speed = %d is above max_fan_speed = %d",
                         options->min_fan_speed, options->max_fan_speed);
     ISO_TRY(settings_check_objects(options));
+    if (options->adaptive_layers)
+        ISO_TRY(check_layer(options, "max_layer_height", settings_of_adaptive(options).max, false));
     ISO_TRY(check_vase(options));
     if (double_area(&options->bed_shape) == 0)
         return iso_fail(ISO_BAD_CONFIG, "bed_shape: the points lie on a line; give its corners one "

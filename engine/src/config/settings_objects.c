@@ -86,9 +86,5 @@ iso_status settings_check_objects(const iso_options *options) {
         return iso_fail(ISO_BAD_CONFIG,
                         "min_layer_height = %g mm is above max_layer_height = %g mm",
                         options->min_layer_height, most);
-    if (most > options->nozzle_diameter)
-        return iso_fail(ISO_BAD_CONFIG,
-                        "max_layer_height: %g mm is more than nozzle_diameter = %g mm can print",
-                        most, options->nozzle_diameter);
     return ISO_OK;
 }

@@ -171,7 +171,7 @@ static iso_status trace(half *h, int32_t t) {
     return ISO_OK;
 }
 
-static iso_status close(half *h) {
+static iso_status close_cut(half *h) {
     for (int32_t t = 0; t < h->mesh->triangle_count; t++)
         if (h->chord[t] >= 0)
             ISO_TRY(trace(h, t));
@@ -208,7 +208,7 @@ static iso_status make_half(iso_mesh *out, const iso_mesh *mesh, double z, bool 
     if (status == ISO_OK)
         status = cut_triangles(&h);
     if (status == ISO_OK)
-        status = close(&h);
+        status = close_cut(&h);
     iso_release(h.number);
     iso_release(h.end);
     iso_release(h.along);

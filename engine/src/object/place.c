@@ -110,7 +110,7 @@ static iso_status fail_to_fit(const placer *p, int32_t placed, int32_t left) {
     const iso_object *object = &p->objects->object[left];
     return iso_fail(ISO_OUTSIDE,
                     "there is no room on the bed for %s, %.2f x %.2f mm: %d of %d objects fit; see "
-                    "duplicate_distance and bed_shape",
+                    "duplicate_distance, skirt_distance and bed_shape",
                     object->name, object->max.x - object->min.x, object->max.y - object->min.y,
                     placed, p->instances->count);
 }
