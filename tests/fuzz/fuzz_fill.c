@@ -2,6 +2,8 @@
  * within the region. Builds that check themselves validate each link besides. */
 #include "fuzz.h"
 
+#include <math.h>
+
 #include <isoslice/fill.h>
 
 enum { MOST_POINTS = 64, HEADER = 6 };
@@ -22,12 +24,20 @@ static void read_contours(iso_region *region, const uint8_t *bytes, size_t size,
     }
 }
 
-/* Within two units of the region. */
+/* Inside, or no further than two units from an edge: tips may be thinner than a unit. */
 static int is_near(const iso_region *region, iso_point p) {
-    for (int32_t dx = -2; dx <= 2; dx++)
-        for (int32_t dy = -2; dy <= 2; dy++)
-            if (iso_region_locate(region, (iso_point){p.x + dx, p.y + dy}) >= 0)
+    if (iso_region_locate(region, p) >= 0)
+        return 1;
+    for (int32_t m = 0; m < region->count; m++)
+        for (int32_t i = region->first[m], last = region->first[m + 1] - 1;
+             i < region->first[m + 1]; last = i++) {
+            iso_point a = region->point[last], b = region->point[i];
+            double dx = b.x - a.x, dy = b.y - a.y, px = p.x - a.x, py = p.y - a.y;
+            double t = (px * dx + py * dy) / (dx * dx + dy * dy);
+            t = t < 0 ? 0 : t > 1 ? 1 : t;
+            if (hypot(px - t * dx, py - t * dy) <= 2)
                 return 1;
+        }
     return 0;
 }
 
