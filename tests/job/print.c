@@ -106,10 +106,10 @@ static void read_move(reader *r, const char *line, const char *end) {
     /* what is too little for a last digit of E is drawn all the same */
     int speck =
         level_move && move_length(m) < 0.01 && m->f != floor(60 * p->options.travel_speed + 0.5);
-    m->kind = level_move && (extrudes || speck) ? MOVE_DRAW
-              : level_move                      ? MOVE_TRAVEL
-              : m->bz != m->az                  ? MOVE_RISE
-                                                : MOVE_FILAMENT;
+    m->kind = level_move && m->e >= 0 && (extrudes || speck) ? MOVE_DRAW
+              : level_move                                   ? MOVE_TRAVEL
+              : m->bz != m->az                               ? MOVE_RISE
+                                                             : MOVE_FILAMENT;
     m->layer = p->level_count - 1;
     m->role = r->role;
     if (m->kind == MOVE_DRAW && !r->unbroken)
