@@ -374,6 +374,8 @@ static void test_monotonic_order(void) {
         int count = drawn_lines(line, &paths), wrong = 0;
         CHECK_EQUAL(drawn_lines(free_line, &zigzag), count);
         CHECK(paths.count >= zigzag.count);
+        for (int i = 0; i < paths.count; i++) /* so that nobody puts them in another order */
+            CHECK_EQUAL(i, paths.path[i].rank);
         for (int i = 0; i < count; i++)
             for (int k = i + 1; k < count; k++) {
                 double from = fmax(line[i].from, line[k].from), to = fmin(line[i].to, line[k].to);

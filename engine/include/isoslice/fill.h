@@ -52,7 +52,8 @@ typedef struct iso_fill_options {
     int32_t link_max;  /* units; longest piece of boundary that joins two lines; 0 = none;
                         * pieces that a widened line fills don't */
     int32_t anchor;    /* units; what is drawn of a longer one at the end of a path; 0 = none */
-    int32_t monotonic; /* nonzero: lines one after another, each to the left of those before */
+    int32_t monotonic; /* nonzero: lines one after another, each to the left of those before;
+                        * the paths have ranks from like.rank on */
     int32_t deviation; /* units; a link goes straight if the boundary is nowhere further from it */
     int32_t shortest;  /* units; paths shorter than this are left out */
     iso_path like;     /* role, tool, speed class, object, group and rank of the paths */

@@ -97,12 +97,16 @@ static iso_status fill_region(iso_paths *out, const iso_region *region,
     find_parts(outer, region);
     sort_members(member, first, outer, count);
     iso_sweep sweep = iso_sweep_of(options->angle);
+    iso_fill_options ranked = *options;
     for (int32_t i = 0; i < count; i++) {
         iso_fill_part part = {region, member + first[i], first[i + 1] - first[i]};
         if (part.count == 0)
             continue;
         iso_arena_mark mark = iso_arena_get_mark(scratch);
-        ISO_TRY(fill_part(out, &part, sweep, options, room, scratch));
+        int32_t before = out->count;
+        ISO_TRY(fill_part(out, &part, sweep, &ranked, room, scratch));
+        if (options->monotonic)
+            ranked.like.rank += out->count - before;
         iso_arena_pop(scratch, mark);
     }
     return ISO_OK;

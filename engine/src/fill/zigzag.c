@@ -27,6 +27,7 @@ typedef struct zigzag {
     bead *to; /* the bead that comes to each point; to[0] unused */
     int32_t count;
     bead line;
+    int32_t runs;
     int32_t end[2];   /* darts at which its first and last line end, if no link or anchor does */
     int32_t *cell;    /* monotonic: of each dart */
     int32_t *waiting; /* monotonic: of each cell, segments below it that are not drawn */
@@ -233,6 +234,7 @@ static iso_status add_run(iso_paths *out, zigzag *run) {
     like.closed = 0;
     if (is_short(run))
         return ISO_OK;
+    like.rank += run->waiting ? run->runs++ : 0; /* one after another */
     run->point[0] = drawn_out(run, run->point[0], run->end[0]);
     run->point[run->count - 1] = drawn_out(run, run->point[run->count - 1], run->end[1]);
     int32_t at = out->vertex_count;
