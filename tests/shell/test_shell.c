@@ -365,7 +365,7 @@ static void test_narrow_strips_and_anchors(void) {
             add_box(&above, -12, -12, 10 - ledge / 1e4, 12, 0);
             const iso_region *list[] = {&above};
             stack around = {.above = list, .above_count = 1, .top = 1};
-            iso_shell_options options = {.narrowest = 4100, .anchor = anchor};
+            iso_shell_options options = {.narrowest = 4100, .top_anchor = anchor, .anchor = anchor};
             split(&shell, &fill, &around, &options, 11);
             double width = ledge > 4100 ? (ledge + anchor) / 1e4 : 0;
             CHECK_NEAR(20 * width, area_of(&shell.top), 5e-3);
@@ -381,7 +381,7 @@ static void test_top_comes_first(void) {
     iso_region outline = square(10), fill = square(9), above = square(4);
     const iso_region *list[] = {&above, &above, &above};
     stack around = {.above = list, .above_count = 3, .top = 3};
-    iso_shell_options options = {.narrowest = 4000, .anchor = 10000};
+    iso_shell_options options = {.narrowest = 4000, .top_anchor = 10000, .anchor = 10000};
     iso_shell shell = {0};
     split(&shell, &fill, &around, &options, 11);
     CHECK_NEAR(324 - 36, area_of(&shell.top), 1e-2);
@@ -550,7 +550,9 @@ static void test_random_outlines(void) {
         for (int i = 0; i < 6; i++)
             if (i % 3 == trial % 5) /* an upright wall among the others */
                 list[i] = &outline[0];
-        iso_shell_options options = {.narrowest = 1000 * (trial % 6), .anchor = 2000 * (trial % 3)};
+        iso_shell_options options = {.narrowest = 1000 * (trial % 6),
+                                     .top_anchor = 1000 * (trial % 3),
+                                     .anchor = 2000 * (trial % 3)};
         iso_shell shell = {0};
         split(&shell, &fill, &around, &options, 16);
         options.bridge_least = 1500 * (trial % 4);

@@ -28,6 +28,7 @@ typedef struct iso_shell_neighbours {
 
 typedef struct iso_shell_options {
     int32_t narrowest;     /* units; strips of a shell narrower than this stay sparse */
+    int32_t top_anchor;    /* units by which tops reach under the layer above */
     int32_t anchor;        /* units by which shells reach into the sparse fill around them */
     int32_t bridge_anchor; /* units by which bridges reach onto what carries them */
     int32_t bridge_least;  /* units; narrower strips over air are no bridges */

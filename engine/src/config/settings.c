@@ -13,7 +13,7 @@ enum { FINEST_ARC = 20 };
 
 /* In spacings of solid lines: so much that the solid parts of a print are as large as
  * PrusaSlicer's, which grows narrow ones layer by layer. Bridges reach onto what carries them. */
-enum { SHELL_ANCHOR = 5, BRIDGE_ANCHOR = 2 };
+enum { TOP_ANCHOR = 2, SHELL_ANCHOR = 5, BRIDGE_ANCHOR = 2 };
 
 enum { BRIDGE_GAP = 500 }; /* units between the threads of a bridge; the figure is PrusaSlicer's */
 
@@ -161,9 +161,10 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
         s->overhang.reach = 0;
 }
 
-/* Solid strips narrower than half a line are left to the walls above and below them, unless the
- * shell has to be as thick everywhere; others reach ANCHOR lines into the sparse fill, so that
- * lines across them are long enough to hold. */
+/* Solid strips that are next to nothing are left to the walls above and below them, unless the shell
+ * has to be as thick everywhere; others reach some lines into the sparse fill, so that lines across
+ * them are long enough to hold. Between the fill and the outlines around it there is a wall, wider
+ * than what those are thinned by. */
 static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                       double height) {
     bool full = options->fill_density >= 100;
@@ -172,14 +173,15 @@ static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t
     bool exact = options->ensure_vertical_shell_thickness;
     s->shell = (iso_shell_options){
         .narrowest = full    ? 2 * spacing
-                     : exact ? spacing / 8
-                             : spacing / 2,
+                     : exact ? spacing / 32
+                             : spacing / 6,
+        .top_anchor = full ? 0 : TOP_ANCHOR * spacing,
         .anchor = full ? 0 : SHELL_ANCHOR * spacing,
         .bridge_least = spacing,
         .bridge_anchor = BRIDGE_ANCHOR * spacing,
         .whole = !full && options->fill_density > 0 && every > 0 && index % every == 0,
     };
-    s->coarse = full ? spacing / 2 : exact ? spacing / 32 : spacing / 4;
+    s->coarse = full ? spacing / 2 : exact || options->perimeters == 0 ? spacing / 64 : spacing / 4;
     if (!full && options->fill_density > 0)
         s->shell.sparse_least =
             (int64_t)(options->solid_infill_below_area * 2 * ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);

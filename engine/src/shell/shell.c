@@ -149,7 +149,7 @@ static iso_status expose_all(iso_shell *shell, const iso_region *fill,
     iso_region *spare = &shell->spare;
     int32_t narrowest = options->narrowest, anchor = options->anchor;
     if (next.missing == 0 || above.missing == 0) /* else all of the fill */
-        ISO_TRY(trim(&shell->top, spare, narrowest, anchor, scratch));
+        ISO_TRY(trim(&shell->top, spare, narrowest, options->top_anchor, scratch));
     if (above.missing == 0)
         ISO_TRY(trim(&shell->solid, spare, narrowest, anchor, scratch));
     if (below.missing == 0)
