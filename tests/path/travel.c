@@ -142,6 +142,36 @@ static void test_short_cut_around_a_corner(void) {
     end(&l);
 }
 
+/* Along a ring a bend each 7.5 degrees hardly slows the nozzle down: quicker than a retraction,
+ * where as many right angles would not be. */
+static void test_gentle_bends_are_quick(void) {
+    enum { POINTS = 48 };
+    layer l;
+    double hole[POINTS][2];
+    begin(&l);
+    add_box(&l, external, (double[]){-20, -20, 20, 20}, 0);
+    for (int i = 0; i < POINTS; i++) {
+        double w = -2 * 3.14159265358979323846 * i / POINTS;
+        hole[i][0] = 10 * cos(w);
+        hole[i][1] = 10 * sin(w);
+    }
+    iso_path wall = external;
+    wall.closed = 1;
+    add(&l, wall, (const double(*)[2])hole, POINTS);
+    add(&l, solid, (const double[][2]){{10.5, -12}, {10.5, -3}}, 2);
+    add(&l, solid, (const double[][2]){{3, 10.5}, {3, 18}}, 2);
+    order(&l);
+    const iso_path *last = path_of(&l, ISO_ROLE_SOLID_INFILL, 1);
+    CHECK(last->travel_count >= 4);
+    CHECK_EQUAL(ISO_RETRACT_NOT, last->retract);
+    l.options.cost.junction_deviation = 0;
+    order(&l);
+    last = path_of(&l, ISO_ROLE_SOLID_INFILL, 1);
+    CHECK_EQUAL(0, last->travel_count);
+    CHECK_EQUAL(ISO_RETRACT_IF_LONG, last->retract);
+    end(&l);
+}
+
 /* ---- walls ---- */
 
 static void add_ring(layer *l) {
@@ -273,6 +303,7 @@ int main(void) {
     RUN(test_printed_top_is_crossed);
     RUN(test_around_walls);
     RUN(test_short_cut_around_a_corner);
+    RUN(test_gentle_bends_are_quick);
     RUN(test_walls_by_outline);
     RUN(test_wall_beside_two);
     RUN(test_phases);

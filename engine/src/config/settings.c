@@ -248,6 +248,7 @@ iso_order_options settings_of_order(const iso_options *options) {
         .acceleration = options->machine_max_acceleration_travel * ISO_UNITS_PER_MM,
         .retraction = filament_seconds(options->retract_length, back, acceleration) +
                       filament_seconds(options->retract_length, forth, acceleration),
-        .retract_before = options->retract_before_travel * ISO_UNITS_PER_MM};
+        .retract_before = options->retract_before_travel * ISO_UNITS_PER_MM,
+        .junction_deviation = options->machine_max_junction_deviation * ISO_UNITS_PER_MM};
     return order;
 }

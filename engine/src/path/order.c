@@ -446,7 +446,8 @@ iso_order_options iso_order_defaults(void) {
                                .cost = {.speed = 150.0 * ISO_UNITS_PER_MM,
                                         .acceleration = 1000.0 * ISO_UNITS_PER_MM,
                                         .retraction = 0.18,
-                                        .retract_before = 2.0 * ISO_UNITS_PER_MM}};
+                                        .retract_before = 2.0 * ISO_UNITS_PER_MM,
+                                        .junction_deviation = 0.013 * ISO_UNITS_PER_MM}};
 }
 
 void iso_order_state_free(iso_order_state *state) {

@@ -12,6 +12,7 @@ typedef struct iso_travel_cost {
     double speed, acceleration; /* units/s, units/s^2 */
     double retraction;          /* s; 0 if such travels don't retract */
     double retract_before;      /* units */
+    double junction_deviation;  /* units: how fast bends are taken; 0: at a stand */
 } iso_travel_cost;
 
 double iso_travel_seconds(const iso_travel_cost *cost, iso_point a, iso_point b);

@@ -17,6 +17,7 @@ typedef struct planning {
     iso_arena *scratch;
     iso_edge_grid grid;
     iso_ways ways;
+    double *squared; /* of speeds along a way */
     int built;
 } planning;
 
@@ -42,6 +43,7 @@ static iso_status list_edges(planning *p) {
     }
     ISO_TRY(ISO_PUSH(edge, p->scratch, n));
     ISO_TRY(iso_ways_new(&p->ways, &p->grid, (int32_t)bends, p->scratch));
+    ISO_TRY(ISO_PUSH(p->squared, p->scratch, bends + 2));
     p->ways.begin = WALL;
     p->ways.end = WALL + 1;
     if (!p->options->avoid_crossing)
@@ -74,6 +76,10 @@ static int spoils_top(const planning *p, iso_point a, iso_point b, int32_t k) {
     return iso_edge_grid_meets(&p->grid, a, b, 0, k);
 }
 
+static double distance(iso_point a, iso_point b) {
+    return sqrt((double)iso_distance_squared(a, b));
+}
+
 /* Of a run of so many seconds. */
 static double length_of_run(const iso_travel_cost *cost, double seconds) {
     double ramps = cost->speed / cost->acceleration;
@@ -84,7 +90,7 @@ static double length_of_run(const iso_travel_cost *cost, double seconds) {
 /* As far as the options allow to go around, or else as far as pays: a retraction takes time, too.
  */
 static double longest_way(const iso_order_options *options, iso_point from, iso_point to) {
-    double straight = sqrt((double)iso_distance_squared(from, to));
+    double straight = distance(from, to);
     if (!options->avoid_crossing)
         return length_of_run(&options->cost, iso_travel_seconds(&options->cost, from, to));
     if (options->max_detour > 0)
@@ -94,16 +100,51 @@ static double longest_way(const iso_order_options *options, iso_point from, iso_
     return INFINITY;
 }
 
-/* As if the nozzle stopped at every bend. */
+/* Points of the way that was found last, its ends included. */
+static iso_point way_at(const planning *p, int32_t i, iso_point from, iso_point to) {
+    return i == 0 ? from : i <= p->ways.points ? p->ways.point[i - 1] : to;
+}
+
+/* Square of the speed at which the arc that stays so near to the bend can be taken, units^2/s^2; as
+ * firmware has it. */
+static double bend_squared(const iso_travel_cost *cost, iso_point a, iso_point b, iso_point c) {
+    double x = (double)b.x - a.x, y = (double)b.y - a.y, most = cost->speed * cost->speed;
+    double u = (double)c.x - b.x, v = (double)c.y - b.y;
+    double lengths = sqrt(x * x + y * y) * sqrt(u * u + v * v);
+    double cosine = lengths > 0 ? (x * u + y * v) / lengths : 1;
+    double sine = cosine > -1 ? sqrt(0.5 * (1 + cosine)) : 0; /* of half the angle inside */
+    double reached = cost->acceleration * cost->junction_deviation * sine;
+    return reached >= most * (1 - sine) ? most : reached / (1 - sine);
+}
+
+/* Seconds for a piece of `length` units entered and left at the given speeds. */
+static double seconds_of_piece(const iso_travel_cost *cost, double length, double in, double out) {
+    double a = cost->acceleration, v = cost->speed;
+    double peak = (2 * a * length + in * in + out * out) / 2;
+    if (peak <= v * v)
+        return (2 * sqrt(peak) - in - out) / a;
+    return ((v - in) * (v - in) + (v - out) * (v - out) + 2 * a * length) / (2 * a * v);
+}
+
+/* Bends are taken as fast as they and the way to brake before the next one allow. */
 static double seconds_of_way(const planning *p, iso_point from, iso_point to) {
-    iso_travel_cost run = p->options->cost;
-    double sum = 0;
-    run.retraction = 0;
-    for (int32_t i = 0; i < p->ways.points; i++) {
-        sum += iso_travel_seconds(&run, from, p->ways.point[i]);
-        from = p->ways.point[i];
+    const iso_travel_cost *cost = &p->options->cost;
+    int32_t last = p->ways.points + 1;
+    double *squared = p->squared, sum = 0;
+    squared[0] = squared[last] = 0;
+    for (int32_t i = 1; i < last; i++)
+        squared[i] = bend_squared(cost, way_at(p, i - 1, from, to), way_at(p, i, from, to),
+                                  way_at(p, i + 1, from, to));
+    for (int32_t i = last; i-- > 1;) {
+        double length = distance(way_at(p, i, from, to), way_at(p, i + 1, from, to));
+        squared[i] = fmin(squared[i], squared[i + 1] + 2 * cost->acceleration * length);
     }
-    return sum + iso_travel_seconds(&run, from, to);
+    for (int32_t i = 0; i < last; i++) {
+        double length = distance(way_at(p, i, from, to), way_at(p, i + 1, from, to));
+        squared[i + 1] = fmin(squared[i + 1], squared[i] + 2 * cost->acceleration * length);
+        sum += seconds_of_piece(cost, length, sqrt(squared[i]), sqrt(squared[i + 1]));
+    }
+    return sum;
 }
 
 static int way_is_hidden(const planning *p, iso_point from, iso_point to, int32_t k) {
