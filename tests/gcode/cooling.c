@@ -127,6 +127,11 @@ static void test_flow_limits_beads_by_their_section(void) {
     iso_cooling_begin(&pace, &o, 7);
     CHECK_EQUAL(5400, pace.feed[INNER]);
     CHECK_EQUAL(2400, iso_pace_limited_feed(&pace, INNER, 0.1e8));
+    o.first_layer_speed[ISO_ROLE_PERIMETER] = 0;
+    o.first_layer_share = 0.5;
+    iso_cooling_begin(&pace, &o, 0);
+    CHECK_EQUAL(2700, pace.feed[INNER]);
+    CHECK_EQUAL(1200, iso_pace_limited_feed(&pace, INNER, 0.1e8));
     o.max_volumetric_speed = 3;
     iso_cooling_begin(&pace, &o, 7);
     CHECK_EQUAL(1800, iso_pace_limited_feed(&pace, INNER, 0.1e8));

@@ -341,8 +341,10 @@ static iso_status write_objects(const iso_gcode_options *o, const iso_paths *lay
         if (object > 0)
             CHECK_OK(iso_gcode_next_object(writer, object));
         for (int i = 0; i < LAYERS - object; i++)
-            CHECK_OK(iso_gcode_layer(
-                writer, &(iso_gcode_layer_info){i, 2000 * (i + 1), 2000, &layer[object]}));
+            CHECK_OK(iso_gcode_layer(writer, &(iso_gcode_layer_info){.index = i,
+                                                                     .z = 2000 * (i + 1),
+                                                                     .height = 2000,
+                                                                     .paths = &layer[object]}));
     }
     CHECK_OK(iso_gcode_finish(&totals, writer, NULL, NULL));
     iso_gcode_writer_free(writer);

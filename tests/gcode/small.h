@@ -34,8 +34,9 @@ static inline iso_status write_file(iso_gcode_totals *totals, const iso_gcode_op
     if (status == ISO_OK)
         status = iso_gcode_begin(writer);
     for (int i = 0; i < layers && status == ISO_OK; i++)
-        status =
-            iso_gcode_layer(writer, &(iso_gcode_layer_info){i, 2000 * (i + 1), 2000, &layer[i]});
+        status = iso_gcode_layer(
+            writer, &(iso_gcode_layer_info){
+                        .index = i, .z = 2000 * (i + 1), .height = 2000, .paths = &layer[i]});
     if (status == ISO_OK)
         status = iso_gcode_finish(totals, writer, config_lines, "0.2");
     iso_gcode_writer_free(writer);

@@ -91,6 +91,7 @@ typedef struct iso_gcode_options {
     double first_layer_small_perimeter_speed;
     double max_print_speed;      /* of speeds that are 0 */
     double auto_flow;            /* mm^3/s of speeds that are 0 */
+    double first_layer_share;    /* of those two on the first layer */
     double max_volumetric_speed; /* mm^3/s of all; 0: no limit */
     double travel_speed;
     double travel_speed_z; /* 0: travel_speed */

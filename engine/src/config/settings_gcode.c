@@ -36,6 +36,8 @@ static void set_speeds(iso_gcode_options *g, const iso_options *options) {
         iso_options_speed(options, ISO_ROLE_EXTERNAL_PERIMETER, true, true);
     g->max_print_speed = options->max_print_speed;
     g->auto_flow = auto_flow(options);
+    g->first_layer_share =
+        options->first_layer_speed.percent ? options->first_layer_speed.value / 100 : 1;
     g->max_volumetric_speed =
         lower(options->max_volumetric_speed, options->filament_max_volumetric_speed);
     g->travel_speed = options->travel_speed;

@@ -35,13 +35,14 @@ static double usual_acceleration(const iso_gcode_options *o, int role, int32_t l
 }
 
 void iso_cooling_begin(iso_layer_pace *pace, const iso_gcode_options *o, int32_t layer) {
-    double most = o->max_volumetric_speed;
+    double most = o->max_volumetric_speed, share = layer == 0 ? o->first_layer_share : 1;
+    double even = o->auto_flow * share;
     for (int s = 0; s < ISO_SPEED_SLOTS; s++) {
         double speed = usual_speed(o, s, layer);
         pace->flow[s] = most;
         if (!(speed > 0)) { /* as fast as an even flow allows */
-            speed = o->max_print_speed;
-            pace->flow[s] = most > 0 && most < o->auto_flow ? most : o->auto_flow;
+            speed = o->max_print_speed * share;
+            pace->flow[s] = most > 0 && most < even ? most : even;
         }
         set_feed(pace, s, iso_head_feed(speed));
     }

@@ -22,6 +22,7 @@ iso_gcode_options iso_gcode_defaults(void) {
         .first_layer_small_perimeter_speed = 30,
         .max_print_speed = 80,
         .auto_flow = 5,
+        .first_layer_share = 1,
         .travel_speed = 130,
         .filament_diameter = 1.75,
         .filament_density = 1.24,
