@@ -88,7 +88,7 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
                      double height) {
     double density = options->fill_density / 100;
     bool full = density >= 1;
-    iso_role role = full ? ISO_ROLE_SOLID_INFILL : ISO_ROLE_INTERNAL_INFILL;
+    iso_role role = ISO_ROLE_INTERNAL_INFILL; /* even if it is full: its speed is that of infill */
     iso_bead solid = bead_of(options, ISO_ROLE_SOLID_INFILL, first, height);
     s->top = fill_of(options, ISO_ROLE_TOP_SOLID_INFILL, first, height, 1);
     s->solid = fill_of(options, ISO_ROLE_SOLID_INFILL, first, height, 1);
@@ -161,10 +161,10 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
         s->overhang.reach = 0;
 }
 
-/* Solid strips that are next to nothing are left to the walls above and below them, unless the shell
- * has to be as thick everywhere; others reach some lines into the sparse fill, so that lines across
- * them are long enough to hold. Between the fill and the outlines around it there is a wall, wider
- * than what those are thinned by. */
+/* Solid strips that are next to nothing are left to the walls above and below them, unless the
+ * shell has to be as thick everywhere; others reach some lines into the sparse fill, so that lines
+ * across them are long enough to hold. Between the fill and the outlines around it there is a wall,
+ * wider than what those are thinned by. */
 static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                       double height) {
     bool full = options->fill_density >= 100;
