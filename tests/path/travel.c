@@ -230,6 +230,60 @@ static void test_wall_beside_two(void) {
     end(&l);
 }
 
+static double seconds_of(const layer *l, const int32_t *order, int32_t count) {
+    iso_point at = {0, 0};
+    double sum = 0;
+    for (int32_t k = 0; k < count; k++) {
+        iso_point next = l->out.vertex[l->out.path[order[k]].first].at;
+        sum += iso_travel_seconds(&l->options.cost, at, next);
+        at = next;
+    }
+    return sum;
+}
+
+/* Towers anywhere: no dearer than if the nearest came next each time. */
+static void test_many_islands(void) {
+    enum { TOWERS = 120 };
+    double saved = 0, all = 0;
+    uint64_t seed = 1;
+    for (int turn = 0; turn < 20; turn++) {
+        layer l;
+        int32_t as_is[TOWERS], nearest[TOWERS];
+        begin(&l);
+        l.options.seam = turn % 2 ? ISO_SEAM_REAR : ISO_SEAM_ALIGNED;
+        for (int i = 0; i < TOWERS; i++) {
+            iso_path wall = external;
+            wall.group = i;
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            double x = (double)(seed >> 40 & 0xfff) / 20, y = (double)(seed >> 52) / 20;
+            add_box(&l, wall, (double[]){x, y, x + 1, y + 1}, 0);
+        }
+        order(&l);
+        iso_point at = {0, 0};
+        uint8_t done[TOWERS] = {0};
+        for (int k = 0; k < TOWERS; k++) {
+            double least = INFINITY;
+            as_is[k] = k;
+            for (int32_t i = 0; i < TOWERS; i++) {
+                iso_point p = l.out.vertex[l.out.path[i].first].at;
+                double d = hypot((double)p.x - at.x, (double)p.y - at.y);
+                if (!done[i] && d < least) {
+                    least = d;
+                    nearest[k] = i;
+                }
+            }
+            done[nearest[k]] = 1;
+            at = l.out.vertex[l.out.path[nearest[k]].first].at;
+        }
+        double before = seconds_of(&l, nearest, TOWERS), after = seconds_of(&l, as_is, TOWERS);
+        CHECK(after <= before + 1e-9);
+        saved += before - after;
+        all += before;
+        end(&l);
+    }
+    CHECK(saved > 0.02 * all);
+}
+
 /* Fill before walls, a skirt before either, ironing last. */
 static void test_phases(void) {
     for (int early = 0; early < 2; early++) {
@@ -306,6 +360,7 @@ int main(void) {
     RUN(test_gentle_bends_are_quick);
     RUN(test_walls_by_outline);
     RUN(test_wall_beside_two);
+    RUN(test_many_islands);
     RUN(test_phases);
     RUN(test_seam_becomes_a_vertex);
     RUN(test_without_memory);

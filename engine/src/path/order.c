@@ -342,7 +342,7 @@ static iso_status order_few_groups(iso_ordering *o, const iso_run *group, int32_
         done |= 1u << chosen;
         o->ends = 0;
         for (int32_t g = 0; g < groups; g++)
-            if (!(done >> g & 1) || n + 1 == groups)
+            if (o->options->infill_first ? g == chosen : !(done >> g & 1) || n + 1 == groups)
                 add_ends(o, group[g]);
         ISO_TRY(order_group(o, group[chosen]));
     }
@@ -375,6 +375,52 @@ static iso_status order_many_groups(iso_ordering *o, const iso_run *group, int32
     return ISO_OK;
 }
 
+/* Where a group begins, if that is decided: at the seam of an external wall. */
+static int begins_at(iso_point *at, const iso_ordering *o, iso_run group) {
+    for (int32_t k = group.begin; k < group.end && o->key[k].phase <= PHASE_WALLS; k++) {
+        if (o->key[k].phase < PHASE_WALLS)
+            return 0;
+        if (o->placed[o->key[k].path]) {
+            *at = o->seam[o->key[k].path].at;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Many groups are small ones, which end near where they begin: points of a tour. `stop` has room
+ * for all of them; its count is 0 if one has no such point. */
+static int32_t list_beginnings(iso_stop *stop, const iso_ordering *o, const iso_run *group,
+                               int32_t groups) {
+    for (int32_t g = 0; g < groups; g++) {
+        if (!begins_at(&stop[g].a, o, group[g]))
+            return 0;
+        stop[g].b = stop[g].a;
+    }
+    return groups;
+}
+
+static iso_status order_many(iso_ordering *o, const iso_run *group, int32_t groups) {
+    iso_tour_frame frame = {.from = o->position};
+    iso_stop *stop;
+    int32_t *tour;
+    ISO_TRY(ISO_PUSH(stop, o->scratch, groups));
+    if (list_beginnings(stop, o, group, groups) == 0)
+        return order_many_groups(o, group, groups);
+    ISO_TRY(ISO_PUSH(tour, o->scratch, groups));
+    ISO_TRY(iso_tour_nearest(tour, stop, groups, o->position, o->scratch));
+    ISO_TRY(iso_tour_improve(tour, stop, groups, &frame, &o->options->cost, o->scratch));
+    for (int32_t n = 0; n < groups; n++) {
+        o->ends = 0;
+        if (n + 1 < groups)
+            o->end[o->ends++] = stop[tour[n + 1] >> 1].a;
+        else
+            add_ends(o, group[tour[n] >> 1]);
+        ISO_TRY(order_group(o, group[tour[n] >> 1]));
+    }
+    return ISO_OK;
+}
+
 /* Skirts before all else: they are there to get the nozzle going. */
 static iso_status order_groups(iso_ordering *o) {
     iso_run *group;
@@ -387,7 +433,7 @@ static iso_status order_groups(iso_ordering *o) {
         else
             group[groups++] = whole;
     }
-    return groups <= FEW ? order_few_groups(o, group, groups) : order_many_groups(o, group, groups);
+    return groups <= FEW ? order_few_groups(o, group, groups) : order_many(o, group, groups);
 }
 
 /* ---- the layer ---- */
