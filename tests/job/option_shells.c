@@ -97,7 +97,7 @@ static void no_shell_no_thickness(const change *c) {
 static void ensure_vertical_shell_thickness(const change *c) {
     CHECK_EQUAL(0, print_runs(c->a, TOP, 17) + print_runs(c->a, SOLID, 17));
     CHECK(print_runs(c->b, TOP, 17) > 0 && print_runs(c->b, BRIDGE, 17) > 0);
-    CHECK(print_filament(c->b, SPARSE, -1) < 0.9 * print_filament(c->a, SPARSE, -1));
+    CHECK(print_filament(c->b, SPARSE, 17) < 0.9 * print_filament(c->a, SPARSE, 17));
 }
 
 /* Layers 0, 5 and 10 have nothing sparse; they lie on sparse lines, as bridges do. */
