@@ -97,7 +97,7 @@ static void test_the_skirt_widens_the_first_layer(void) {
     CHECK(has("\n;<83.0627 111.937 33.8747>\n"));
     set("skirts", "2");
     CHECK_OK(run(1));
-    CHECK(has("\n;<82.4378 112.562 35.1243>\n"));
+    CHECK(has("\n;<82.4378 112.562 35.1244>\n"));
     set("skirts", "0");
     set("brim_width", "3");
     CHECK_OK(run(1));

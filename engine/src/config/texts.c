@@ -6,6 +6,8 @@
 
 #include "base/memory.h"
 
+#define PI 3.14159265358979323846
+
 enum { EXPANDED_SIZE = 64 << 10 /* as the G-code writer has it */ };
 
 /* ---- the place of the first layer ---- */
@@ -43,13 +45,13 @@ static int32_t convex_hull(iso_vec2 *hull, const iso_vec2 *point, int32_t count)
 static double widening(const iso_options *options) {
     double height = iso_options_first_height(options);
     double width = iso_options_width(options, ISO_ROLE_SKIRT, true, height);
-    iso_bead bead = iso_bead_of(iso_units(width), iso_units(height));
+    double spacing = width - height * (1 - PI / 4);
     double brim = options->brim_width;
     if (options->brim_type != ISO_BRIM_OUTER && options->brim_type != ISO_BRIM_BOTH)
         brim = 0;
     if (options->skirts == 0)
         return brim > 0 ? brim + options->brim_separation : 0;
-    return brim + options->skirt_distance + (options->skirts + 0.5) * iso_mm(bead.spacing);
+    return brim + options->skirt_distance + (options->skirts + 0.5) * spacing;
 }
 
 /* Every edge of the hull moved outwards; corners are cut. */
