@@ -34,7 +34,7 @@ for pattern in rectilinear alignedrectilinear grid triangles stars cubic line co
 done
 
 # What covers a surface is drawn at full density, on every layer.
-for pattern in monotonic; do
+for pattern in monotonic monotoniclines; do
     draw $pattern --top-fill-pattern $pattern --solid-infill-every-layers 1 --top-solid-layers 100 \
         --bottom-solid-layers 0 --fill-density 100% --fill-pattern $pattern --extrusion-width 0.8 --nozzle-diameter 0.6
 done

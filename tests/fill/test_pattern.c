@@ -12,14 +12,14 @@
 static const double pi = 3.14159265358979323846;
 static const double densities[] = {0.1, 0.2, 0.4};
 
-static const char *const name[ISO_PATTERN_COUNT] = {"rectilinear",   "alignedrectilinear",
-                                                    "monotonic",     "grid",
-                                                    "triangles",     "stars",
-                                                    "cubic",         "line",
-                                                    "concentric",    "honeycomb",
-                                                    "3dhoneycomb",   "gyroid",
-                                                    "hilbertcurve",  "archimedeanchords",
-                                                    "octagramspiral"};
+static const char *const name[ISO_PATTERN_COUNT] = {"rectilinear",    "alignedrectilinear",
+                                                    "monotonic",      "grid",
+                                                    "triangles",      "stars",
+                                                    "cubic",          "line",
+                                                    "concentric",     "honeycomb",
+                                                    "3dhoneycomb",    "gyroid",
+                                                    "hilbertcurve",   "archimedeanchords",
+                                                    "octagramspiral", "monotoniclines"};
 
 /* Only the pattern itself: no links, no anchors, nothing left out. */
 static iso_fill_options bare(int pattern, double density, int layer) {
@@ -236,7 +236,7 @@ static void test_links_and_anchors(void) {
     iso_paths alone = {0}, anchored = {0}, joined = {0};
     make_square(&region);
     for (int pattern = ISO_PATTERN_GRID; pattern < ISO_PATTERN_COUNT; pattern++) {
-        if (pattern == ISO_PATTERN_CONCENTRIC)
+        if (pattern == ISO_PATTERN_CONCENTRIC || pattern == ISO_PATTERN_MONOTONIC_LINES)
             continue;
         iso_fill_options options = bare(pattern, 0.2, 3);
         fill(&alone, &region, &options);
@@ -416,6 +416,27 @@ static void test_solid_insets(void) {
     drop_region(&region);
 }
 
+/* Each line is ranked after those on its right, and none is joined to another. */
+static void test_monotonic_lines(void) {
+    iso_region region = {0};
+    iso_paths paths = {0};
+    make_square(&region);
+    iso_fill_options options = linked(ISO_PATTERN_MONOTONIC_LINES, 0.3, 1);
+    fill(&paths, &region, &options);
+    double c = cos(options.angle * pi / 180), s = sin(options.angle * pi / 180), before = -1e9;
+    int wrong = 0;
+    for (int i = 0; i < paths.count; i++) {
+        const iso_path_vertex *v = &paths.vertex[paths.path[i].first];
+        double left = v->at.y * c - v->at.x * s;
+        wrong += left <= before || paths.path[i].count != 2 || paths.path[i].rank != i;
+        before = left;
+    }
+    CHECK(paths.count > 70);
+    CHECK_EQUAL(0, wrong);
+    iso_paths_free(&paths);
+    drop_region(&region);
+}
+
 static void test_same_bytes(void) {
     iso_region region = {0};
     iso_paths a = {0}, b = {0};
@@ -491,6 +512,7 @@ int main(void) {
     RUN(test_pattern_keeps_its_place);
     RUN(test_surfaces);
     RUN(test_solid_insets);
+    RUN(test_monotonic_lines);
     RUN(test_same_bytes);
     RUN(test_failing_allocations);
     RUN(test_refuses_nonsense);

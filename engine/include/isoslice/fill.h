@@ -32,6 +32,7 @@ typedef enum iso_fill_pattern {
     ISO_PATTERN_HILBERT,
     ISO_PATTERN_ARCHIMEDEAN,
     ISO_PATTERN_OCTAGRAM,
+    ISO_PATTERN_MONOTONIC_LINES, /* as MONOTONIC, but no line is linked to another */
     ISO_PATTERN_COUNT
 } iso_fill_pattern;
 

@@ -29,6 +29,7 @@ ISO_WORD(PATTERN, ISO_PATTERN_GYROID, "gyroid")
 ISO_WORD(PATTERN, ISO_PATTERN_HILBERT, "hilbertcurve")
 ISO_WORD(PATTERN, ISO_PATTERN_ARCHIMEDEAN, "archimedeanchords")
 ISO_WORD(PATTERN, ISO_PATTERN_OCTAGRAM, "octagramspiral")
+ISO_WORD(PATTERN, ISO_PATTERN_MONOTONIC_LINES, "monotoniclines")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN2, "marlin2")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN, "marlin")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_KLIPPER, "klipper")
@@ -169,12 +170,13 @@ ISO_OPTION(
     "Pattern of the sparse infill (docs/patterns.md). Patterns that can't fill solid give way "
     "to rectilinear at 100%.")
 ISO_OPTION(top_fill_pattern, PATTERN, "monotonic", "", 0, 0, "Infill",
-           "Pattern of top surfaces: rectilinear, monotonic, alignedrectilinear, concentric, "
-           "hilbertcurve, archimedeanchords or octagramspiral.")
+           "Pattern of top surfaces: rectilinear, monotonic, monotoniclines, alignedrectilinear, "
+           "concentric, hilbertcurve, archimedeanchords or octagramspiral.")
 ISO_OPTION(bottom_fill_pattern, PATTERN, "monotonic", "", 0, 0, "Infill",
            "Pattern of bottom surfaces: as for top_fill_pattern.")
 ISO_OPTION(fill_angle, NUMBER, "45", "deg", 0, 360, "Infill",
-           "Angle of the infill against the X axis; every layer turns it by 90 degrees.")
+           "Angle of the infill against the X axis; patterns that cross from layer to layer turn "
+           "on from there.")
 ISO_OPTION(infill_overlap, RELATIVE, "25%", "mm", 0, 5, "Infill",
            "How far the infill reaches into the walls to bond with them; in % of the width of "
            "inner walls.")

@@ -7,6 +7,7 @@ int iso_fill_pattern_is_solid(iso_fill_pattern pattern) {
     case ISO_PATTERN_RECTILINEAR:
     case ISO_PATTERN_ALIGNED:
     case ISO_PATTERN_MONOTONIC:
+    case ISO_PATTERN_MONOTONIC_LINES:
     case ISO_PATTERN_CONCENTRIC:
     case ISO_PATTERN_HILBERT:
     case ISO_PATTERN_ARCHIMEDEAN:
@@ -21,6 +22,7 @@ double iso_fill_pattern_turn(iso_fill_pattern pattern, int32_t index) {
     switch (pattern) {
     case ISO_PATTERN_RECTILINEAR:
     case ISO_PATTERN_MONOTONIC:
+    case ISO_PATTERN_MONOTONIC_LINES:
     case ISO_PATTERN_LINE:
         return 90 * (index & 1);
     case ISO_PATTERN_HONEYCOMB: /* the same cells, but other walls of theirs are drawn twice */
@@ -98,6 +100,10 @@ static iso_status fill_straight(iso_paths *out, const iso_region *region,
     iso_sweep sweep = iso_sweep_of(options->angle);
     placed.phase += (double)iso_sweep_v(&sweep, options->origin) / (double)ISO_SWEEP_ONE;
     placed.monotonic |= options->pattern == ISO_PATTERN_MONOTONIC;
+    if (options->pattern == ISO_PATTERN_MONOTONIC_LINES) {
+        placed.monotonic = 1;
+        placed.link_max = placed.anchor = 0;
+    }
     return iso_fill_rectilinear(out, region, &placed, scratch);
 }
 
@@ -111,6 +117,7 @@ static iso_status fill_pattern(iso_paths *out, const iso_region *region,
     case ISO_PATTERN_RECTILINEAR:
     case ISO_PATTERN_ALIGNED:
     case ISO_PATTERN_MONOTONIC:
+    case ISO_PATTERN_MONOTONIC_LINES:
         return fill_straight(out, region, options, scratch);
     case ISO_PATTERN_GRID:
     case ISO_PATTERN_TRIANGLES:
@@ -141,6 +148,7 @@ static iso_status fill_solid(iso_paths *out, const iso_region *region,
 
 static int has_wide_border(const iso_fill_options *options) {
     return options->density >= 1 && options->pattern >= ISO_PATTERN_CONCENTRIC &&
+           options->pattern != ISO_PATTERN_MONOTONIC_LINES &&
            iso_fill_pattern_is_solid((iso_fill_pattern)options->pattern) &&
            options->margin < (int32_t)(options->spacing / 2);
 }
