@@ -15,6 +15,7 @@
 
 #include "base/memory.h"
 #include "base/output.h"
+#include "config/foreign.h"
 #include "gcode/writer.h"
 #include "path/order.h"
 #include "path/spiral.h"
@@ -309,7 +310,8 @@ typedef struct iso_config_block {
 
 static iso_status config_lines(iso_output *output, void *payload) {
     const iso_config_block *block = payload;
-    return iso_options_print(block->options, config_line, output);
+    ISO_TRY(iso_options_print(block->options, config_line, output));
+    return iso_foreign_print(&block->options->foreign, config_line, output);
 }
 
 static iso_status begin_texts(iso_job *job, const iso_region *first) {

@@ -85,6 +85,7 @@ static void test_values_of_the_job(void) {
     snprintf(expected, sizeof expected, "\n;<BOX 10 %.*s 1970 90 105 4>\n", length, model);
     CHECK(has(expected));
     CHECK(has(";before 0\n") && has(";before 9\n") && has(";low 0.2\n") && has(";high 2\n"));
+    CHECK(has("\n; printer_model = BOX\n")); /* for those who read it back */
     CHECK(has("\n;filament 200\n") && has("\n;filament ends at 2\n") && has("\n;<9 2 2>\n"));
 }
 

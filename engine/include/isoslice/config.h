@@ -209,8 +209,8 @@ ISO_API iso_status iso_options_print(const iso_options *options, iso_option_prin
 ISO_API iso_status iso_options_print_changed(const iso_options *options, iso_option_printer *print,
                                              void *payload) ISO_MUST_CHECK;
 
-/* Copy a G-code text with every [key] or {key} replaced by that option's value. ISO_BAD_CONFIG
- * names a placeholder that is no option, or a result of more than size - 1 bytes. */
+/* Copy a G-code text with its macros evaluated (docs/macros.md), as far as they need no job.
+ * ISO_BAD_CONFIG says where the text is wrong, or that the result has more than size - 1 bytes. */
 ISO_API iso_status iso_options_expand(char *out, size_t size, const char *text,
                                       const iso_options *options) ISO_MUST_CHECK;
 

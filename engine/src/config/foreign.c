@@ -41,3 +41,12 @@ bool iso_foreign_set(iso_foreign *foreign, const char *key, const char *value) {
     foreign->used += (int32_t)(key_size + size);
     return true;
 }
+
+iso_status iso_foreign_print(const iso_foreign *foreign, iso_option_printer *print, void *payload) {
+    for (size_t at = 0; at < (size_t)foreign->used;) {
+        const char *key = foreign->text + at, *value = key + strlen(key) + 1;
+        ISO_TRY(print(payload, key, value));
+        at += strlen(key) + strlen(value) + 2;
+    }
+    return ISO_OK;
+}
