@@ -223,6 +223,67 @@ static void test_solid_fill_goes_forth_and_back(void) {
     iso_paths_free(&out);
 }
 
+static double length_of(const iso_paths *paths, const iso_path *p) {
+    double sum = 0;
+    for (int32_t k = 0; k < p->count - !p->closed; k++) {
+        iso_point a = paths->vertex[p->first + k].at;
+        iso_point b = paths->vertex[p->first + (k + 1) % p->count].at;
+        sum += hypot((double)a.x - b.x, (double)a.y - b.y);
+    }
+    return sum;
+}
+
+/* Layers that no slicer makes: walls that cross, repeat points or enclose nothing, of all roles,
+ * with all options. Whatever the order, each path is drawn once and as long as it was. */
+static void test_anything_goes(void) {
+    static const int32_t spans[] = {1, 4, 3000, 300000, 2 * ISO_COORDINATE_MAX};
+    for (int turn = 0; turn < 400; turn++) {
+        iso_paths in = {0}, out = {0};
+        iso_arena scratch = {0};
+        iso_order_state state = {0};
+        iso_order_options options = iso_order_defaults();
+        seed = (uint64_t)turn;
+        int32_t span = spans[turn % 5], kinds = 1 + random_below(8);
+        options.seam = (iso_seam)(turn / 5 % 4);
+        options.infill_first = random_below(2);
+        options.retract_crossing_only = random_below(3) > 0;
+        options.avoid_crossing = random_below(2);
+        options.cost.retract_before = turn % 3 ? 20000 : 0;
+        for (int layer = 0; layer < 3; layer++) {
+            iso_paths_clear(&in);
+            for (int i = 0; i < 60; i++) {
+                iso_point point[12];
+                int count = 1 + random_below(12);
+                for (int k = 0; k < count; k++)
+                    point[k] =
+                        (iso_point){random_below(span) - span / 2, random_below(span) - span / 2};
+                iso_path like = {.role = (uint8_t)random_below(kinds),
+                                 .closed = (uint8_t)random_below(2),
+                                 .group = random_below(kinds),
+                                 .rank = random_below(4)};
+                CHECK_OK(iso_paths_add(&in, &like, point, count, i, 1));
+            }
+            CHECK_OK(iso_order_layer(&out, &in, &state, &options, &scratch));
+            CHECK_EQUAL(in.count, out.count);
+            int drawn[60] = {0};
+            for (int32_t i = 0; i < out.count; i++) {
+                const iso_path *p = &out.path[i];
+                const iso_path *q = &in.path[out.vertex[p->first].width];
+                drawn[out.vertex[p->first].width]++;
+                CHECK(p->count == q->count || (p->closed && p->count == q->count + 1));
+                CHECK_NEAR(length_of(&in, q), length_of(&out, p), 2);
+                CHECK(p->travel_first + p->travel_count <= out.travel_count);
+            }
+            for (int i = 0; i < 60; i++)
+                CHECK_EQUAL(1, drawn[i]);
+        }
+        iso_order_state_free(&state);
+        iso_arena_free(&scratch);
+        iso_paths_free(&in);
+        iso_paths_free(&out);
+    }
+}
+
 static void test_nothing_and_empty_paths(void) {
     iso_paths in = {0}, out = {0};
     iso_arena scratch = {0};
@@ -267,6 +328,7 @@ int main(void) {
     RUN(test_random_layers_follow_the_rule);
     RUN(test_degenerate_spreads);
     RUN(test_solid_fill_goes_forth_and_back);
+    RUN(test_anything_goes);
     RUN(test_nothing_and_empty_paths);
     RUN(test_without_memory);
     return check_verdict();
