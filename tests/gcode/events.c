@@ -144,6 +144,28 @@ static void test_bad_events_are_refused(void) {
     unlink(SMALL_FILE);
 }
 
+/* Any text is either a list of events or refused with a message. */
+static void test_random_events(void) {
+    static const char letter[] = "0123456789.:;; \n\t-+epauscolrtmM";
+    uint64_t seed = 5;
+    for (int i = 0; i < 3000; i++) {
+        char text[48];
+        int size = i % 40, good;
+        for (int k = 0; k < size; k++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            text[k] = letter[(seed >> 33) % (sizeof letter - 1)];
+        }
+        text[size] = '\0';
+        iso_gcode_options o = plain();
+        iso_gcode_totals totals;
+        o.events = text;
+        iso_status status = write_file(&totals, &o, NULL, 0);
+        good = status == ISO_OK;
+        CHECK(good || (status == ISO_BAD_CONFIG && strstr(iso_error_message(), "events: ")));
+    }
+    unlink(SMALL_FILE);
+}
+
 /* ---- labels ---- */
 
 static const iso_vec2 outline[] = {{10, 20}, {30, 20}, {20.5, 40.25}};
@@ -195,6 +217,36 @@ static void test_labels_in_comments(void) {
     r = print_labels(ISO_LABELS_DISABLED, ISO_FLAVOUR_MARLIN2);
     CHECK_EQUAL(0, reading_count(&r, "; printing object"));
     free(r.text);
+}
+
+/* Names of any length and with any bytes stay on their line. */
+static void test_strange_names(void) {
+    char name[400];
+    for (int i = 0; i < 399; i++)
+        name[i] = (char)(i % 255 + 1);
+    name[399] = '\0';
+    const iso_gcode_object strange[] = {{name, 12345678, 999999, {-1e6, 1e6}, NULL, 0},
+                                        {NULL, 0, 0, {0, 0}, NULL, 0}};
+    static const iso_flavour flavour[] = {ISO_FLAVOUR_MARLIN2, ISO_FLAVOUR_KLIPPER,
+                                          ISO_FLAVOUR_REPRAPFIRMWARE};
+    for (int i = 0; i < 6; i++) {
+        iso_paths layer = {0};
+        iso_gcode_totals totals;
+        iso_gcode_options o = plain();
+        make_objects(&layer);
+        o.labels = i < 3 ? ISO_LABELS_FIRMWARE : ISO_LABELS_OCTOPRINT;
+        o.flavour = flavour[i % 3];
+        o.object = strange;
+        o.object_count = 2;
+        reading r = print(&totals, &o, &layer, 1);
+        long odd = 0;
+        for (const char *line = r.text; *line; line = strchr(line, '\n') + 1)
+            odd += !strchr("\n;GM", *line) && strncmp(line, "EXCLUDE_OBJECT", 14) != 0;
+        CHECK_EQUAL(0, odd);
+        CHECK_EQUAL(i >= 3 ? 3 : 0, reading_count(&r, "; stop printing object "));
+        free(r.text);
+        iso_paths_free(&layer);
+    }
 }
 
 static void test_labels_by_firmware(void) {
@@ -403,7 +455,9 @@ int main(void) {
     RUN(test_events_at_heights);
     RUN(test_events_by_flavour);
     RUN(test_bad_events_are_refused);
+    RUN(test_random_events);
     RUN(test_labels_in_comments);
+    RUN(test_strange_names);
     RUN(test_labels_by_firmware);
     RUN(test_pieces_of_a_path);
     RUN(test_flow_limit_by_vertex);
