@@ -73,7 +73,9 @@ static void test_walls_close(void) {
         print p;
         int open = 0;
         all_solids[m].make(&s);
-        print_shape(&p, &s, "fill_density = 0\ntop_solid_layers = 0\nbottom_solid_layers = 0");
+        print_shape(&p, &s,
+                    "fill_density = 0\ntop_solid_layers = 0\nbottom_solid_layers = 0\n"
+                    "overhangs = 0");
         print_check(&p, &s);
         for (int32_t i = 0; i < p.move_count;) {
             int32_t end = i + 1;
