@@ -236,6 +236,18 @@ static void test_keys_of_files_have_prusaslicers_kinds(void) {
     memset(foreign, 0, sizeof *foreign);
 }
 
+/* It is searched by halves. */
+static void test_the_table_of_keys_is_in_order(void) {
+    static const char *const keys[] = {
+#define ISO_KEY(key, kind, initial) #key,
+#include "macro/keys.inl"
+#undef ISO_KEY
+    };
+    for (size_t i = 1; i < sizeof keys / sizeof *keys; i++)
+        if (!CHECK(strcmp(keys[i - 1], keys[i]) < 0))
+            fprintf(stderr, "  %s\n", keys[i]);
+}
+
 int main(void) {
     iso_options_defaults(&options);
     CHECK_OK(iso_options_set(&options, "fill_pattern", "rectilinear", "test"));
@@ -250,6 +262,7 @@ int main(void) {
     RUN(test_options_have_their_kinds);
     RUN(test_the_job_has_names);
     RUN(test_keys_of_files_have_prusaslicers_kinds);
+    RUN(test_the_table_of_keys_is_in_order);
     iso_macro_globals_free(&globals);
     return check_verdict();
 }

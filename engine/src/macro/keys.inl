@@ -84,9 +84,10 @@ ISO_KEY(filament_max_volumetric_speed, NUMBERS, "")
 ISO_KEY(filament_minimal_purge_on_wipe_tower, NUMBERS, "15")
 ISO_KEY(filament_multitool_ramming, BOOLS, "0")
 ISO_KEY(filament_notes, TEXTS, "\"\"")
-ISO_KEY(
-    filament_ramming_parameters, TEXTS,
-    "\"120 100 6.6 6.8 7.2 7.6 7.9 8.2 8.7 9.4 9.9 10.0| 0.05 6.6 0.45 6.8 0.95 7.8 1.45 8.3 1.95 9.7 2.45 10 2.95 7.6 3.45 7.6 3.95 7.6 4.45 7.6 4.95 7.6\"")
+ISO_KEY(filament_ramming_parameters, TEXTS,
+        "\"120 100 6.6 6.8 7.2 7.6 7.9 8.2 8.7 9.4 9.9 10.0| "
+        "0.05 6.6 0.45 6.8 0.95 7.8 1.45 8.3 "
+        "1.95 9.7 2.45 10 2.95 7.6 3.45 7.6 3.95 7.6 4.45 7.6 4.95 7.6\"")
 ISO_KEY(filament_retract_before_travel, NUMBERS, "nil")
 ISO_KEY(filament_retract_before_wipe, PERCENTS, "nil")
 ISO_KEY(filament_retract_layer_change, BOOLS, "nil")
