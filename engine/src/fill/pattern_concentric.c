@@ -3,10 +3,17 @@
 
 #include "fill/pattern.h"
 
-static iso_status inset(iso_region *out, const iso_region *in, double distance,
+enum { THINNING = 20 }; /* units; each loop would carry all the points of those around it */
+
+typedef struct room {
+    iso_region a, b, half, whole;
+} room;
+
+static iso_status inset(iso_region *out, const iso_region *in, double distance, room *spare,
                         iso_planar_scratch *planar) {
     iso_offset_options options = iso_offset_defaults(-(int32_t)(distance + 0.5));
-    return iso_offset(out, in, &options, planar);
+    ISO_TRY(iso_offset(&spare->whole, in, &options, planar));
+    return iso_region_simplify(out, &spare->whole, THINNING, planar);
 }
 
 static double loop_length(const iso_point *point, int32_t count) {
@@ -58,17 +65,14 @@ static int has_within(const iso_region *region, int32_t m, const iso_region *inn
 /* Parts that the next inset swallows may leave up to two spacings open in their middle. Those with
  * more than one get a loop half a spacing in. */
 static iso_status draw_middles(const rings *r, const iso_region *now, const iso_region *next,
-                               iso_region *half, iso_planar_scratch *planar) {
-    ISO_TRY(inset(half, now, r->spacing / 2, planar));
+                               room *spare, iso_planar_scratch *planar) {
+    iso_region *half = &spare->half;
+    ISO_TRY(inset(half, now, r->spacing / 2, spare, planar));
     for (int32_t m = 0; m < half->count; m++)
         if (half->parent[m] < 0 && !has_within(half, m, next))
             ISO_TRY(draw_contour(r, half, m));
     return ISO_OK;
 }
-
-typedef struct room {
-    iso_region a, b, half;
-} room;
 
 static iso_status draw_rings(rings *r, const iso_region *region, room *spare,
                              iso_planar_scratch *planar) {
@@ -76,10 +80,10 @@ static iso_status draw_rings(rings *r, const iso_region *region, room *spare,
     iso_region *next = &spare->a;
     for (; now->count > 0; r->rank++) {
         ISO_TRY(draw_loops(r, now));
-        ISO_TRY(inset(next, now, r->spacing, planar));
+        ISO_TRY(inset(next, now, r->spacing, spare, planar));
         r->rank++;
         if (r->options->density < 1)
-            ISO_TRY(draw_middles(r, now, next, &spare->half, planar));
+            ISO_TRY(draw_middles(r, now, next, spare, planar));
         r->rank--;
         now = next;
         next = next == &spare->a ? &spare->b : &spare->a;
@@ -95,7 +99,7 @@ static iso_status find_depth(double *depth, const iso_region *region, double spa
     double step = spacing;
     *depth = 0;
     while (step > spacing / 20) {
-        ISO_TRY(inset(next, now, step, planar));
+        ISO_TRY(inset(next, now, step, spare, planar));
         if (next->count == 0) {
             step /= 2;
             continue;
@@ -132,5 +136,6 @@ iso_status iso_pattern_concentric(iso_paths *out, const iso_region *region,
     iso_region_free(&spare.a);
     iso_region_free(&spare.b);
     iso_region_free(&spare.half);
+    iso_region_free(&spare.whole);
     return status;
 }
