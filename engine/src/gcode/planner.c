@@ -61,20 +61,22 @@ static void let_go(iso_planner *planner, int32_t count) {
 }
 
 /* Square of the speed at which the corner's arc of the given deviation can be taken, but at most
- * `most`, which gentle corners reach without a division. */
-static double junction_squared(const iso_planner *planner, double cosine, double acceleration,
+ * `most`. q is the square of the cosine of half the angle between the moves, 0 straight on; its
+ * sine is at least 1 - q, which tells gentle corners without a root. */
+static double junction_squared(const iso_planner *planner, double q, double acceleration,
                                double most) {
-    double sine = cosine < -1 ? 1 : sqrt(0.5 * (1 - cosine));
-    double reached = acceleration * planner->limits.junction_deviation * sine;
+    double pull = acceleration * planner->limits.junction_deviation;
+    if (pull * (1 - q) >= most * q)
+        return most;
+    double sine = sqrt(1 - q), reached = pull * sine;
     return reached >= most * (1 - sine) ? most : reached / (1 - sine);
 }
 
 /* Chords of a curve, below 1 mm and 45 degrees: Marlin takes the curve's own radius, the chord
- * divided by its turn. The turn is 2 asin(s), s the sine of its half, here by the asin's series. */
-static double curve_squared(double cosine, double length, double acceleration, double most) {
-    double q = cosine < -1 ? 0 : 0.5 * (1 + cosine); /* s^2 */
-    double pull = length * acceleration, bound = 4.3 * q;
-    if (pull * pull >= most * most * bound) /* the series is below 1.03 */
+ * divided by its turn. The turn is 2 asin(s), s^2 = q, here by the asin's series. */
+static double curve_squared(double q, double length, double acceleration, double most) {
+    double pull = length * acceleration;
+    if (pull * pull >= most * most * 4.3 * q) /* the series is below 1.03 */
         return most;
     double series = 1 + q * (1. / 6 + q * (3. / 40 + q * (15. / 336)));
     double squared = pull / (2 * series * sqrt(q));
@@ -88,9 +90,10 @@ static double corner_squared(const iso_planner *planner, const double to[3], dou
     int moved = planner->x != 0 || planner->y != 0 || planner->z != 0;
     if (!moved || cosine > 0.999999 || (to[0] == 0 && to[1] == 0 && to[2] == 0))
         return 0;
-    double squared = junction_squared(planner, cosine, acceleration, most);
+    double q = cosine < -1 ? 0 : 0.5 * (1 + cosine);
+    double squared = junction_squared(planner, q, acceleration, most);
     if (length < 1 && cosine < -0.70710678118654752)
-        squared = curve_squared(cosine, length, acceleration, squared);
+        squared = curve_squared(q, length, acceleration, squared);
     return squared;
 }
 
