@@ -305,6 +305,24 @@ static void test_phases(void) {
     }
 }
 
+/* Lines with a ring among them: a tour as without it, and the ring begins where it is met. */
+static void test_few_rings_among_lines(void) {
+    layer l;
+    begin(&l);
+    for (int i = 0; i < 9; i++) {
+        double x = i * 7 % 9;
+        add(&l, solid, (const double[][2]){{x, 0}, {x, 20}}, 2);
+    }
+    add_box(&l, solid, (double[]){9, 18, 11, 30}, 0);
+    order(&l);
+    CHECK(l.out.path[9].closed);
+    iso_point at = l.out.vertex[l.out.path[9].first].at;
+    CHECK(at.x == 90000 && at.y == 180000);
+    for (int32_t i = 0; i < 9; i++)
+        CHECK_EQUAL(10000 * i, l.out.vertex[l.out.path[i].first].at.x);
+    end(&l);
+}
+
 /* A seam that is a new vertex: the loop is as long as before, and its beads keep what they had. */
 static void test_seam_becomes_a_vertex(void) {
     layer l;
@@ -362,6 +380,7 @@ int main(void) {
     RUN(test_wall_beside_two);
     RUN(test_many_islands);
     RUN(test_phases);
+    RUN(test_few_rings_among_lines);
     RUN(test_seam_becomes_a_vertex);
     RUN(test_without_memory);
     return check_verdict();

@@ -246,6 +246,12 @@ iso_status ordering_nearest(iso_ordering *o, iso_run r) {
     return ISO_OK;
 }
 
+static int32_t nearest_vertex(const iso_ordering *o, int32_t k) {
+    start best = {INT64_MAX, k, 0};
+    look_at_starts(&best, o, k);
+    return best.vertex;
+}
+
 iso_status ordering_tour(iso_ordering *o, iso_run r) {
     iso_arena_mark mark = iso_arena_get_mark(o->scratch);
     int32_t count = r.end - r.begin, *tour;
@@ -253,16 +259,20 @@ iso_status ordering_tour(iso_ordering *o, iso_run r) {
     ISO_TRY(ISO_PUSH(stop, o->scratch, count));
     ISO_TRY(ISO_PUSH(tour, o->scratch, count));
     for (int32_t k = 0; k < count; k++) {
+        const iso_path *path = ordering_path(o, r.begin + k);
         const iso_path_vertex *vertex = ordering_vertex(o, r.begin + k);
-        int32_t last = ordering_path(o, r.begin + k)->count - 1;
-        stop[k] = (iso_stop){vertex[0].at, vertex[last].at};
+        stop[k] = (iso_stop){vertex[0].at, vertex[path->closed ? 0 : path->count - 1].at};
     }
-    ISO_TRY(iso_tour_nearest(tour, stop, count, o->position, o->scratch));
     iso_tour_frame frame = {o->position, o->end, o->ends};
+    ISO_TRY(iso_tour_nearest(tour, stop, count, o->position, o->scratch));
     ISO_TRY(iso_tour_improve(tour, stop, count, &frame, &o->cost, o->scratch));
     for (int32_t n = 0; n < count; n++) {
         int32_t k = r.begin + (tour[n] >> 1);
-        ordering_emit(o, k, tour[n] & 1 ? ordering_path(o, k)->count - 1 : 0);
+        const iso_path *path = ordering_path(o, k);
+        ordering_emit(o, k,
+                      path->closed  ? nearest_vertex(o, k)
+                      : tour[n] & 1 ? path->count - 1
+                                    : 0);
     }
     iso_arena_pop(o->scratch, mark);
     return ISO_OK;
@@ -279,13 +289,14 @@ static iso_status order_ranks(iso_ordering *o, iso_run phase) {
     return ISO_OK;
 }
 
-/* Where a closed path of the fill begins depends on where the nozzle comes from, so a tour can't
- * plan with it. */
+/* Where a closed path of the fill begins depends on where the nozzle comes from, so a tour can plan
+ * with a few of them at most. */
 static iso_status order_fill(iso_ordering *o, iso_run fill) {
+    int32_t closed = 0;
     for (int32_t k = fill.begin; k < fill.end; k++)
-        if (ordering_path(o, k)->closed)
-            return ordering_nearest(o, fill);
-    return ordering_tour(o, fill);
+        closed += ordering_path(o, k)->closed;
+    return closed > (fill.end - fill.begin) / 4 ? ordering_nearest(o, fill)
+                                                : ordering_tour(o, fill);
 }
 
 static iso_status order_phase(iso_ordering *o, iso_run phase) {

@@ -61,7 +61,7 @@ void ordering_emit_from(iso_ordering *o, int32_t k, iso_seam_place seam);
  * came first. */
 iso_status ordering_nearest(iso_ordering *o, iso_run r) ISO_MUST_CHECK;
 
-/* Open paths by a tour. */
+/* Paths by a tour, in which closed ones stand where their first vertex is. */
 iso_status ordering_tour(iso_ordering *o, iso_run r) ISO_MUST_CHECK;
 
 /* The walls of one group: walls.c. */
