@@ -221,7 +221,7 @@ static void test_stair(void) {
 
 /* ---- how thick shells are ---- */
 
-enum { CELLS = 128 };
+enum { CELLS = 96 };
 
 typedef struct raster {
     uint8_t cell[CELLS][CELLS];
@@ -380,7 +380,8 @@ static void test_no_hole_in_slopes(void) {
                 print_shape(&p, &s, settings);
                 CHECK_EQUAL(ISO_OK, p.status);
                 double share = share_missing(&p, &s, shells[c].top, shells[c].bottom);
-                CHECK(share_missing(&p, &s, shells[c].top + 12, shells[c].bottom + 12) > 0.02);
+                if (c == 0 && exact) /* there would be some to find */
+                    CHECK(share_missing(&p, &s, 16, 16) > 0.02);
                 if (!CHECK(share < (exact ? 0.0005 : 0.004)))
                     fprintf(stderr, "    %.2f %% of the shells of the %s, %d and %d, exact %d\n",
                             100 * share, name[m], shells[c].top, shells[c].bottom, exact);
