@@ -222,7 +222,7 @@ static void measure_regions(bench_stages *s) {
 
 static const iso_fill_options *fill_options(const bench_stages *s, int32_t i) {
     const iso_layer_settings *settings = &s->part.window.layer[i].settings;
-    return s->solid ? &settings->solid : &settings->sparse[0];
+    return s->solid ? &settings->solid : &settings->sparse;
 }
 
 static void fill_all(void *payload) {
