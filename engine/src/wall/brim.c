@@ -23,6 +23,21 @@ static bool is_inner(const brim *b, int32_t contour) {
     return iso_region_locate(&b->whole, b->grown.point[b->grown.first[contour]]) > 0;
 }
 
+/* The innermost outline of the region that the loop lies within: a hole's loops are printed
+ * together.
+ */
+static int32_t outline_around(const brim *b, int32_t contour) {
+    const iso_region *region = b->region;
+    iso_point at = b->grown.point[b->grown.first[contour]];
+    for (int32_t c = region->count; c-- > 0;) {
+        int32_t first[2] = {0, region->first[c + 1] - region->first[c]};
+        iso_region one = {.count = 1, .first = first, .point = region->point + region->first[c]};
+        if (iso_region_locate(&one, at) > 0)
+            return c;
+    }
+    return -1;
+}
+
 static iso_status draw(iso_paths *paths, brim *b, const iso_brim_options *options,
                        iso_planar_scratch *scratch) {
     iso_path like = {
@@ -33,11 +48,14 @@ static iso_status draw(iso_paths *paths, brim *b, const iso_brim_options *option
             iso_offset_defaults(options->distance + i * options->bead.spacing);
         grown.join = ISO_JOIN_ROUND;
         ISO_TRY(iso_offset(&b->grown, options->inner ? b->region : &b->whole, &grown, scratch));
-        for (int32_t c = 0; c < b->grown.count; c++)
-            if (is_inner(b, c) ? options->inner : options->outer)
+        for (int32_t c = 0; c < b->grown.count; c++) {
+            bool inner = is_inner(b, c);
+            like.group = inner ? -2 - outline_around(b, c) : -1;
+            if (inner ? options->inner : options->outer)
                 ISO_TRY(iso_paths_add(paths, &like, b->grown.point + b->grown.first[c],
                                       b->grown.first[c + 1] - b->grown.first[c],
                                       options->bead.width, options->bead.area));
+        }
     }
     return ISO_OK;
 }
