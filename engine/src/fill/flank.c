@@ -202,9 +202,7 @@ static void even_out(bins *b, int32_t run[], const iso_flanks *f) {
             from = i;
         run[i] = from;
         for (int side = 0; side < 2; side++) /* the mean of the run so far */
-            b->left[side][from] += (here[side] - (i > from) * b->left[side][from] -
-                                    (i == from) * b->left[side][from]) /
-                                   (i - from + 1);
+            b->left[side][from] += (here[side] - b->left[side][from]) / (i - from + 1);
     }
 }
 
@@ -239,7 +237,11 @@ static int32_t make_pieces(iso_flank_piece *piece, const iso_flanks *f, bins *b,
 int32_t iso_flanks_pieces(iso_flank_piece piece[ISO_FLANK_PIECES], iso_flanks *f, int32_t first) {
     int32_t segment = f->flank[first].segment;
     const iso_crossing *end = f->hatch->crossing + 2 * segment;
-    bins b = {.count = bins_of(f, segment), .begin = along(f->sweep, end[0].at)};
+    bins b;
+    b.count = bins_of(f, segment);
+    b.begin = along(f->sweep, end[0].at);
+    for (int side = 0; side < 2; side++)
+        memset(b.left[side], 0, (size_t)b.count * sizeof *b.left[side]);
     b.length = (along(f->sweep, end[1].at) - b.begin) / b.count;
     if (b.length <= 0) {
         *piece = (iso_flank_piece){end[1].at, f->usual.width, f->usual.area};

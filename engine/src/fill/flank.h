@@ -4,7 +4,8 @@
  *
  * Such places are the arcs that come back to the line that they leave. Either the line is the last
  * one before the boundary (a cap), or the boundary comes up to it from a neighbouring line (a
- * valley). Arcs between two lines are crossed by beads' ends instead. */
+ * valley). Arcs between two lines are met by beads' ends instead, unless they run along the lines
+ * for long (a slope). */
 #ifndef ISO_FILL_FLANK_H
 #define ISO_FILL_FLANK_H
 

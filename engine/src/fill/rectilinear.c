@@ -55,7 +55,7 @@ static iso_status fill_part(iso_paths *out, const iso_fill_part *part, iso_sweep
                                    .area = (int32_t)(options->area * share + 0.5),
                                    .spacing = (int32_t)(options->spacing * share + 0.5)},
                          .nominal = options->width,
-                         .margin = options->margin};
+                         .margin = options->margin > 0 ? options->margin : 0};
     if (options->fit && !options->even)
         ISO_TRY(iso_flanks_find(&flanks, scratch));
     return iso_zigzag_draw(out, &hatch, &flanks, options, scratch);
