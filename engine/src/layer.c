@@ -263,7 +263,7 @@ static iso_status lie_on(iso_layer *layer, iso_hand *hand, const iso_layer *bene
     iso_shell *shell = &layer->shell;
     if (s->lid_least > 0)
         ISO_TRY(iso_shell_find_lids(shell, &beneath->shell.sparse, s->lid_least,
-                                    s->shell.bridge_anchor, hand->planar));
+                                    s->lid_anchor, hand->planar));
     ISO_TRY(check(&shell->lid, hand));
     ISO_TRY(check(&shell->solid, hand));
     if (s->overhang.reach > 0)

@@ -12,8 +12,9 @@
 enum { FINEST_ARC = 20 };
 
 /* In spacings of solid lines: so much that the solid parts of a print are as large as
- * PrusaSlicer's, which grows narrow ones layer by layer. Bridges reach onto what carries them. */
-enum { TOP_ANCHOR = 2, SHELL_ANCHOR = 5, BRIDGE_ANCHOR = 2 };
+ * PrusaSlicer's, which grows narrow ones layer by layer. Bridges reach as far onto what carries
+ * them, but not on solid layers, which their thick beads would overfill. */
+enum { TOP_ANCHOR = 2, SHELL_ANCHOR = 5, BRIDGE_ANCHOR = 2, LID_ANCHOR = 2 };
 
 enum { BRIDGE_GAP = 500 }; /* units between the threads of a bridge; the figure is PrusaSlicer's */
 
@@ -153,6 +154,7 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
     if (s->bridge_angle_given)
         s->bridge.angle = options->bridge_angle;
     s->lid_least = options->fill_density < 100 ? 2 * bead.width : 0;
+    s->lid_anchor = LID_ANCHOR * bead.spacing;
     s->overhang = (iso_overhang_options){.reach = iso_units(options->nozzle_diameter) / 2,
                                          .shortest = wall.width,
                                          .width = wall.width,
@@ -178,7 +180,7 @@ static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t
         .top_anchor = full ? 0 : TOP_ANCHOR * spacing,
         .anchor = full ? 0 : SHELL_ANCHOR * spacing,
         .bridge_least = spacing,
-        .bridge_anchor = BRIDGE_ANCHOR * spacing,
+        .bridge_anchor = (full ? BRIDGE_ANCHOR : SHELL_ANCHOR) * spacing,
         .whole = !full && options->fill_density > 0 && every > 0 && index % every == 0,
     };
     s->coarse = full ? spacing / 2 : exact || options->perimeters == 0 ? spacing / 64 : spacing / 4;

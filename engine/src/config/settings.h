@@ -25,6 +25,7 @@ typedef struct iso_layer_settings {
     iso_fill_options top, solid, bridge, lid;
     int32_t bridge_angle_given;    /* else each bridge has its own */
     int32_t lid_least;             /* units; see iso_shell_find_lids; 0: no lids */
+    int32_t lid_anchor; /* units */
     iso_overhang_options overhang; /* reach 0: none */
     int32_t irons;                 /* tops are passed over again; 2: all solid areas are */
     int32_t ironing_inset;         /* units */
