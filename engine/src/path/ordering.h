@@ -2,6 +2,7 @@
 #ifndef ISO_PATH_ORDERING_H
 #define ISO_PATH_ORDERING_H
 
+#include "path/nearest.h"
 #include "path/order.h"
 
 /* What of a group is printed before what. */
@@ -20,7 +21,11 @@ typedef struct iso_order_key {
     int32_t object, group, phase, rank, path;
 } iso_order_key;
 
-enum { ORDERING_ENDS = 16 };
+enum {
+    ORDERING_ENDS = 16,
+    ORDERING_FEW = 8 /* paths, or groups, are looked through one by one; a grid would cost more to
+                        fill */
+};
 
 /* A run of keys; one level of the hierarchy group > phase > rank > path. */
 typedef struct iso_run {
@@ -63,6 +68,23 @@ iso_status ordering_nearest(iso_ordering *o, iso_run r) ISO_MUST_CHECK;
 
 /* Paths by a tour, in which closed ones stand where their first vertex is. */
 iso_status ordering_tour(iso_ordering *o, iso_run r) ISO_MUST_CHECK;
+
+/* A vertex at which a path may begin: of open ones both ends, of those whose seam is decided that
+ * alone. Candidates' owners are the caller's, their names are vertices. */
+typedef struct iso_start {
+    int64_t distance;
+    int32_t key, vertex;
+} iso_start;
+
+int64_t ordering_count_starts(const iso_ordering *o, iso_run r);
+int32_t ordering_list_starts(iso_candidate *candidate, const iso_ordering *o, int32_t k,
+                             int32_t owner);
+void ordering_look_at_starts(iso_start *best, const iso_ordering *o, int32_t k);
+
+iso_status ordering_too_many(void);
+
+/* All of the layer, group by group. */
+iso_status ordering_groups(iso_ordering *o) ISO_MUST_CHECK;
 
 /* The walls of one group: walls.c. */
 iso_status ordering_walls(iso_ordering *o, iso_run walls) ISO_MUST_CHECK;
