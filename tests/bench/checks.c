@@ -231,7 +231,7 @@ static void check_regions(check *c, figures *f, bench_part *part) {
         complain(c, "%s", iso_error_message());
     for (int32_t i = 0; i < part->levels.count; i++) {
         iso_layer *layer = window_layer(&part->window, i);
-        iso_shell *shell = &part->hand.shell;
+        iso_shell *shell = &layer->shell;
         check_region(c, f, part, &layer->region, "outline", i);
         for (int32_t k = 0; k < part->window.levels; k++)
             if (i < window_wide_end(k, part->levels.count))

@@ -48,9 +48,9 @@ static void place(bench_part *part) {
 
 static void outline(bench_part *part) {
     iso_window *window = &part->window;
-    int32_t top, bottom, count = part->levels.count;
-    settings_shells(&top, &bottom, part->options);
-    bench_must(window_new(window, count, top, bottom, count), part->path);
+    int32_t count = part->levels.count;
+    iso_shell_depth shells = settings_of_shells(part->options);
+    bench_must(window_new(window, &part->levels, &shells, count, 1), part->path);
     for (int32_t i = 0; i < count; i++) {
         iso_layer *layer = window_layer(window, i);
         settings_of_layer(&layer->settings, part->options, i, part->levels.height[i]);
@@ -75,7 +75,10 @@ void part_load(bench_part *part, const char *path, const iso_options *options) {
 
 void part_fill(bench_part *part, int32_t index) {
     iso_shell_neighbours around = window_around(&part->window, index);
-    bench_must(layer_fill(window_layer(&part->window, index), &part->hand, &around), part->path);
+    iso_layer *layer = window_layer(&part->window, index);
+    const iso_layer *beneath = index > 0 ? window_layer(&part->window, index - 1) : NULL;
+    bench_must(layer_split(layer, &part->hand, &around), part->path);
+    bench_must(layer_fill(layer, &part->hand, beneath), part->path);
 }
 
 void part_free(bench_part *part) {

@@ -175,14 +175,14 @@ static void split_all(void *payload) {
     bench_stages *s = payload;
     const iso_window *window = &s->part.window;
     iso_planar_scratch *planar = s->part.hand.planar;
-    iso_shell *shell = &s->part.hand.shell;
     int32_t count = s->part.levels.count;
     s->bytes = 0;
     for (int32_t level = 1; level < window->levels; level++)
         for (int32_t i = 0; i < window_wide_end(level, count); i++)
             bench_must(window_widen(window, i, level, planar), "shells");
     for (int32_t i = 0; i < count; i++) {
-        const iso_layer *layer = &window->layer[i];
+        iso_layer *layer = &window->layer[i];
+        iso_shell *shell = &layer->shell;
         iso_shell_neighbours around = window_around(window, i);
         bench_must(iso_shell_split(shell, &layer->area, &around, &layer->settings.shell, planar),
                    "shells");
