@@ -11,7 +11,7 @@ static int32_t random_below(int32_t n) {
     return (int32_t)((seed >> 33) % (uint64_t)n);
 }
 
-static const iso_travel_cost usual = {150e4, 1000e4, 0.18, 2e4};
+static const iso_travel_cost usual = {150e4, 1000e4, 0.18, 2e4, 130};
 
 static iso_point random_point(int32_t span) {
     return (iso_point){random_below(span) - span / 2, random_below(span)};
