@@ -41,6 +41,10 @@ static void set_walls(iso_layer_settings *s, const iso_options *options, bool fi
         .small_length = iso_units(2 * PI * SMALL_RADIUS),
         .arc_tolerance = tolerance > FINEST_ARC ? tolerance : FINEST_ARC,
     };
+    if (options->thin_walls)
+        s->wall.thin_least = iso_units(options->nozzle_diameter / 3);
+    if (options->gap_fill_enabled && options->gap_fill_speed > 0)
+        s->wall.gap_least = s->wall.inner.width / 5;
 }
 
 /* What is done to the outlines before the walls, and to the skin after. */

@@ -4,6 +4,15 @@
 #include <stdbool.h>
 
 #include "base/memory.h"
+#include "planar/region.h"
+#include "planar/scratch.h"
+#include "wall/reach.h"
+
+/* Sides of narrow places are looked at in pieces no longer than this, units; beads shorter than so
+ * many of their widths are not worth the travel. */
+enum { GAP_STEP = 900, THIN_STEP = 1500 };
+#define GAP_SHORTEST 1.5
+#define THIN_SHORTEST 1.0
 
 static iso_status inset(iso_region *out, const iso_region *in, int32_t distance,
                         int32_t arc_tolerance, iso_planar_scratch *scratch) {
@@ -50,36 +59,188 @@ static int32_t wall_distance(int32_t wall, const iso_wall_options *options) {
     return (before + options->inner.spacing) / 2;
 }
 
-/* `at` and `next` are two regions that take turns. */
-static iso_status draw_walls(iso_paths *paths, iso_region *inside, iso_region *turn,
-                             const iso_region *island, const iso_wall_options *options,
-                             iso_planar_scratch *scratch) {
+typedef struct iso_walling {
+    iso_paths *paths;
+    const iso_wall_options *options;
+    iso_planar_scratch *scratch;
+    iso_region turn[2]; /* take turns as the walls' middles */
+    iso_region left;
+    bool ahead; /* the second wall is drawn already, and nothing is narrow */
+} iso_walling;
+
+/* Rounding and the arcs' corners may leave a seam of this many units between what was shrunk and
+ * grown again. */
+enum { SEAM = 20 };
+
+iso_status iso_gap_left(iso_region *left, const iso_region *region, const iso_region *reached,
+                        int32_t radius, iso_planar_scratch *scratch) {
+    iso_region grown = {0};
+    iso_offset_options grow = iso_offset_defaults(radius + SEAM);
+    grow.join = ISO_JOIN_ROUND;
+    iso_status status = iso_offset(&grown, reached, &grow, scratch);
+    if (status == ISO_OK)
+        status = iso_boolean(left, ISO_DIFFERENCE, region, &grown, scratch);
+    iso_region_free(&grown);
+    return status;
+}
+
+/* Shrink `from` by `distance`, and look whether it is wide everywhere: surely so if the operation
+ * was free of collisions and every contour stayed. */
+static iso_status shrink(iso_walling *w, iso_region *to, const iso_region *from, int32_t distance,
+                         bool *wide) {
+    int64_t untouched = iso_planar_get_counts(w->scratch).untouched;
+    bool missed = false;
+    ISO_TRY(inset(to, from, distance, w->options->arc_tolerance, w->scratch));
+    if (iso_planar_get_counts(w->scratch).untouched == untouched || from->count != to->count)
+        ISO_TRY(reach_misses(&missed, from, to, distance, &w->scratch->arena));
+    *wide = !missed;
+    return ISO_OK;
+}
+
+/* Leave out what no circle of that width fits into: corners' tips, most of all. Holes stay, since
+ * only a contour large enough has any. */
+static void drop_small(iso_region *region, double width) {
+    int32_t count = 0, points = 0;
+    for (int32_t c = 0; c < region->count; c++) {
+        const iso_point *point = region->point + region->first[c];
+        int32_t size = region->first[c + 1] - region->first[c];
+        double area = (double)contour_double_area(point, size) / 2;
+        if (area >= 0 && area < 0.785 * width * width)
+            continue;
+        memmove(region->point + points, point, (size_t)size * sizeof *point);
+        points += size;
+        region->parent[count++] = -1;
+        region->first[count] = points;
+    }
+    region->count = count;
+}
+
+static iso_status fill_gaps(iso_walling *w, const iso_region *at, const iso_region *next,
+                            int32_t wall) {
+    const iso_wall_options *options = w->options;
+    int32_t distance = wall_distance(wall, options);
+    const iso_bead *before = wall == 1 ? &options->external : &options->inner;
+    iso_gap_options gap = {.height = options->inner.height,
+                           .least = options->gap_least,
+                           .most = 2 * options->inner.spacing,
+                           .border = before->spacing,
+                           .step = GAP_STEP,
+                           .shortest = GAP_SHORTEST,
+                           .like = options->like};
+    gap.like.role = ISO_ROLE_GAP_FILL;
+    gap.like.rank = options->count;
+    ISO_TRY(iso_gap_left(&w->left, at, next, distance, w->scratch));
+    drop_small(&w->left, gap.least + gap.border);
+    return iso_gap_fill(w->paths, &w->left, &gap, &w->scratch->arena);
+}
+
+/* Take from the outermost loops those stretches whose two sides come closer than 0.6 spacings to
+ * each other: one wider bead will do there. */
+static iso_status part_loops(iso_walling *w, iso_region *loops, int32_t close, bool *parted) {
+    iso_region kept = {0}, narrow = {0};
+    iso_offset_options grow = iso_offset_defaults(4 * SEAM);
+    iso_status status = inset(&kept, loops, close, 50, w->scratch);
+    if (status == ISO_OK)
+        status = iso_gap_left(&w->left, loops, &kept, close, w->scratch);
+    if (status == ISO_OK)
+        drop_small(&w->left, 2 * close);
+    *parted = status == ISO_OK && w->left.count > 0;
+    if (*parted) {
+        status = iso_region_clean(&narrow, &w->left, ISO_FILL_POSITIVE, w->scratch);
+        if (status == ISO_OK)
+            status = iso_offset(&w->left, &narrow, &grow, w->scratch);
+        if (status == ISO_OK)
+            status = iso_boolean(&kept, ISO_DIFFERENCE, loops, &w->left, w->scratch);
+        if (status == ISO_OK) {
+            iso_region swap = *loops;
+            *loops = kept;
+            kept = swap;
+        }
+    }
+    iso_region_free(&kept);
+    iso_region_free(&narrow);
+    return status;
+}
+
+static iso_status draw_thin(iso_walling *w, const iso_region *island, iso_region *loops) {
+    const iso_wall_options *options = w->options;
+    const iso_bead *bead = &options->external;
+    int32_t close = bead->spacing * 3 / 10;
+    int32_t least = options->thin_least > bead->height ? options->thin_least : bead->height;
+    iso_gap_options thin = {.height = bead->height,
+                            .least = least,
+                            .most = bead->width + 2 * close,
+                            .outline = 1,
+                            .step = THIN_STEP,
+                            .shortest = THIN_SHORTEST,
+                            .like = options->like};
+    thin.like.role = ISO_ROLE_EXTERNAL_PERIMETER;
+    thin.like.rank = options->external_first ? 0 : options->count - 1;
+    ISO_TRY(iso_gap_left(&w->left, island, loops, bead->width / 2, w->scratch));
+    drop_small(&w->left, least);
+    return iso_gap_fill(w->paths, &w->left, &thin, &w->scratch->arena);
+}
+
+/* Whether the outline is too narrow somewhere shows when loops are shrunk: the outermost, or the
+ * next, which keep further apart than the thinnest pair of loops. */
+static iso_status draw_outermost(iso_walling *w, const iso_region *island) {
+    const iso_wall_options *options = w->options;
+    iso_region *loops = &w->turn[0], *next = &w->turn[1];
+    bool wide, parted = false;
+    ISO_TRY(shrink(w, loops, island, wall_distance(0, options), &wide));
+    if (options->thin_least <= 0)
+        return ISO_OK;
+    if (wide && options->count > 1) {
+        ISO_TRY(shrink(w, next, loops, wall_distance(1, options), &w->ahead));
+        if (w->ahead)
+            return ISO_OK;
+    }
+    ISO_TRY(part_loops(w, loops, options->external.spacing * 3 / 10, &parted));
+    if (!parted && wide)
+        return ISO_OK;
+    return draw_thin(w, island, loops);
+}
+
+static iso_status draw_inner(iso_walling *w, const iso_region *at, iso_region *next, int32_t wall) {
+    const iso_wall_options *options = w->options;
+    bool wide;
+    if (wall == 1 && w->ahead)
+        return ISO_OK;
+    ISO_TRY(shrink(w, next, at, wall_distance(wall, options), &wide));
+    if (options->gap_least > 0 && !wide)
+        ISO_TRY(fill_gaps(w, at, next, wall));
+    return ISO_OK;
+}
+
+static iso_status draw_walls(iso_walling *w, iso_region *inside, const iso_region *island) {
+    const iso_wall_options *options = w->options;
     const iso_region *at = island;
     int32_t reached = 0; /* from the middle of the last wall to its inner edge */
     for (int32_t wall = 0; wall < options->count && at->count > 0; wall++) {
-        iso_region *next = &turn[wall & 1];
-        ISO_TRY(inset(next, at, wall_distance(wall, options), options->arc_tolerance, scratch));
-        ISO_TRY(add_loops(paths, next, wall, options));
+        iso_region *next = &w->turn[wall & 1];
+        ISO_TRY(wall == 0 ? draw_outermost(w, island) : draw_inner(w, at, next, wall));
+        ISO_TRY(add_loops(w->paths, next, wall, options));
         reached = (wall == 0 ? options->external.spacing : options->inner.spacing) / 2;
         at = next;
     }
     /* no path runs along `inside`: the usual arcs will do */
     int32_t usual = iso_offset_defaults(0).arc_tolerance;
     int32_t tolerance = options->arc_tolerance > usual ? options->arc_tolerance : usual;
-    return inset(inside, at, reached + options->fill_inset, tolerance, scratch);
+    return inset(inside, at, reached + options->fill_inset, tolerance, w->scratch);
 }
 
 iso_status iso_walls(iso_paths *paths, iso_region *inside, const iso_region *island,
                      const iso_wall_options *options, iso_planar_scratch *scratch) {
-    iso_region turn[2] = {0};
+    iso_walling w = {.paths = paths, .options = options, .scratch = scratch};
     int32_t count = paths->count, vertices = paths->vertex_count;
-    iso_status status = draw_walls(paths, inside, turn, island, options, scratch);
+    iso_status status = draw_walls(&w, inside, island);
     if (status != ISO_OK) {
         paths->count = count;
         paths->vertex_count = vertices;
         iso_region_clear(inside);
     }
-    iso_region_free(&turn[0]);
-    iso_region_free(&turn[1]);
+    iso_region_free(&w.turn[0]);
+    iso_region_free(&w.turn[1]);
+    iso_region_free(&w.left);
     return status;
 }
