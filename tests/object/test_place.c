@@ -150,6 +150,62 @@ static void test_mixed(void) {
     }
 }
 
+/* An angle of two legs, 12 mm wide, without their common corner twice. */
+static void angle(shape *s) {
+    shape_box(s, 0, 0, 0, 50, 12, 3);
+    shape_box(s, 0, 12, 0, 12, 40, 3);
+}
+
+static double box_gap(const double a[4], const double b[4]) {
+    double x = fmax(a[0] - b[2], b[0] - a[2]), y = fmax(a[1] - b[3], b[1] - a[3]);
+    return x > 0 && y > 0 ? sqrt(x * x + y * y) : fmax(x, y);
+}
+
+/* The smallest distance between the legs of two angles. */
+static double angle_gap(const iso_instances *all) {
+    static const double leg[2][4] = {{-25, -20, 25, -8}, {-25, -8, -13, 20}};
+    double least = INFINITY, a[4], b[4];
+    for (int32_t i = 0; i < 4 * all->count * all->count; i++) {
+        int32_t one = i / 4 / all->count, other = i / 4 % all->count;
+        if (one >= other)
+            continue;
+        for (int k = 0; k < 4; k++) {
+            iso_point p = all->instance[one].by, q = all->instance[other].by;
+            a[k] = leg[i & 1][k] + iso_mm(k % 2 ? p.y : p.x);
+            b[k] = leg[i / 2 & 1][k] + iso_mm(k % 2 ? q.y : q.x);
+        }
+        least = fmin(least, box_gap(a, b));
+    }
+    return least;
+}
+
+/* Angles go into each other: more fit than by their hulls, and none is nearer than asked for. */
+static void test_angles(void) {
+    shape s[1] = {{0}};
+    iso_objects objects;
+    iso_planar_scratch *scratch;
+    int most[2] = {0};
+    angle(&s[0]);
+    if (!objects_of(&objects, s, 1) || !CHECK_OK(iso_planar_scratch_new(&scratch)))
+        return;
+    for (int by_hull = 0; by_hull < 2; by_hull++)
+        for (int copies = 2; copies < 60; copies++) {
+            iso_placing placing = {.bed = bed_250x210, .bed_count = 4, .distance = 4};
+            iso_instances all;
+            placing.copies = copies;
+            placing.by_hull = by_hull;
+            if (iso_objects_place(&all, &objects, &placing, scratch) != ISO_OK)
+                break;
+            most[by_hull] = copies;
+            CHECK(angle_gap(&all) > 4 - 0.001);
+            iso_instances_free(&all);
+        }
+    printf("     %d angles, %d by their hulls\n", most[0], most[1]);
+    CHECK(most[0] > most[1] + 4);
+    iso_planar_scratch_free(scratch);
+    iso_objects_free(&objects);
+}
+
 static void box_of_all(iso_vec2 *low, iso_vec2 *high, const iso_instances *instances,
                        const iso_objects *objects) {
     *low = (iso_vec2){INFINITY, INFINITY};
@@ -254,6 +310,7 @@ int main(void) {
     RUN(test_nothing_between);
     RUN(test_beds);
     RUN(test_mixed);
+    RUN(test_angles);
     RUN(test_middle);
     RUN(test_no_room);
     RUN(test_no_memory);

@@ -107,6 +107,7 @@ typedef struct iso_instances {
 typedef struct iso_placing {
     const iso_vec2 *bed; /* [bed_count] mm, a polygon of any shape around the bed */
     int32_t bed_count;
+    bool by_hull;          /* nest convex hulls, as printing one by one needs, not outlines */
     bool keep;             /* single copies stay where the files have them, come what may */
     bool has_center;       /* else the middle of the bed's box */
     iso_vec2 center;       /* mm; where the middle of everything comes to lie if there is room */
@@ -117,9 +118,10 @@ typedef struct iso_placing {
 } iso_placing;
 
 /* Find a place for every copy: a single one and a grid are centred, wherever that reaches to;
- * several are nested by their hulls so that all lie on the bed at least `distance` (less a
- * micrometre) from each other, and around the centre if they fit so. The same places every time.
- * ISO_OUTSIDE: they don't fit; the message names the first object left over and how many did fit.
+ * several are nested so that all lie on the bed and their outlines, seen from above without holes,
+ * are at least `distance` (less a micrometre) from each other, and around the centre if they fit
+ * so. The same places every time. ISO_OUTSIDE: they don't fit; the message names the first object
+ * left over and how many did fit.
  */
 ISO_API iso_status iso_objects_place(iso_instances *instances, iso_objects *objects,
                                      const iso_placing *placing,

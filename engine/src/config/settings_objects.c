@@ -46,6 +46,7 @@ iso_placing settings_of_placing(const iso_options *options) {
         distance = fmax(distance, options->extruder_clearance_radius);
     return (iso_placing){.bed = options->bed_shape.point,
                          .bed_count = options->bed_shape.count,
+                         .by_hull = options->complete_objects,
                          .keep = options->dont_arrange,
                          .has_center = options->center.given,
                          .center = {options->center.x, options->center.y},

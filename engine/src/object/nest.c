@@ -3,6 +3,7 @@
 #include "base/sort.h"
 #include "object/hull.h"
 #include "object/lattice.h"
+#include "object/outline.h"
 #include "planar/predicate.h"
 #include "planar/region.h"
 
@@ -17,9 +18,11 @@
  * columns and diagonally, and in a lattice. */
 
 enum {
-    SLACK = 6,    /* units that outlines may be too near, so that a place that just fits is one */
-    THIN = 300,   /* units by which outlines may be thickened to have fewer corners */
-    MARGINS = 500 /* units a round join may reach too far */
+    SLACK = 6,     /* units that outlines may be too near, so that a place that just fits is one */
+    THIN = 300,    /* units by which outlines may be thickened to have fewer corners */
+    MARGINS = 500, /* units a round join may reach too far */
+    COARSE = 1500, /* units by which outlines that aren't convex may be thickened */
+    PIECES = 6     /* convex ones of an outline, beyond which its hull is taken */
 };
 
 typedef enum direction { AROUND, ROWS, COLUMNS, DIAGONAL, LATTICE } direction;
@@ -37,10 +40,10 @@ static const plan plans[] = {
 enum { PLANS = sizeof plans / sizeof *plans };
 
 typedef struct kind {
-    iso_point *thin, *wide; /* the outline with fewer corners; the same grown by the distance */
-    int32_t thin_count, wide_count;
-    iso_point middle;  /* of its box */
-    iso_region inside; /* where it may stand on the bed */
+    iso_pieces thin, wide;      /* the outline with fewer corners; the same grown by the distance */
+    iso_pieces hull, wide_hull; /* the same of its hull */
+    iso_point middle;           /* of its box */
+    iso_region inside;          /* where it may stand on the bed */
 } kind;
 
 typedef struct nester {
@@ -52,34 +55,52 @@ typedef struct nester {
     iso_point *by;   /* [all copies] of the plan at hand */
     iso_point *best; /* [all copies] of the plan that got farthest */
     iso_point *sum;  /* room for a no-fit polygon */
-    iso_region free, next, obstacles;
+    iso_region free, next, obstacles, pair;
 } nester;
 
 /* ---- outlines ---- */
 
-static iso_status copy_points(iso_point **to, const iso_point *point, int32_t count) {
-    ISO_TRY(ISO_ALLOCATE(*to, (int64_t)count + 1));
-    memcpy(*to, point, (size_t)count * sizeof **to);
+/* One piece: the hull of the points. */
+static iso_status one_piece(iso_pieces *piece, const iso_point *point, int32_t count) {
+    iso_point *room;
+    ISO_TRY(ISO_ALLOCATE(piece->first, 2));
+    ISO_TRY(ISO_ALLOCATE(piece->point, (int64_t)count + 1));
+    ISO_TRY(ISO_ALLOCATE(room, count));
+    memcpy(room, point, (size_t)count * sizeof *point);
+    count = hull_of(piece->point, room, count);
+    piece->first[0] = 0;
+    piece->first[1] = hull_thin(piece->point, count, THIN, room);
+    piece->count = 1;
+    iso_release(room);
     return ISO_OK;
 }
 
-/* The outline grown by the distance, with few corners. */
-static iso_status widen(kind *k, nester *n, const iso_nest_shape *shape) {
-    iso_region *raw = &n->obstacles, *grown = &n->next;
-    iso_offset_options options = iso_offset_defaults(n->nest->distance - SLACK);
+/* The region grown by a distance, into n->next. */
+static iso_status grow(nester *n, const iso_region *region, int32_t distance) {
+    iso_offset_options options = iso_offset_defaults(distance);
     options.join = ISO_JOIN_ROUND;
     options.arc_tolerance = MARGINS;
-    iso_region_clear(raw);
-    ISO_TRY(iso_region_add(raw, k->thin, k->thin_count));
-    ISO_TRY(iso_region_clean(&n->free, raw, ISO_FILL_NONZERO, n->scratch));
-    ISO_TRY(iso_offset(grown, &n->free, &options, n->scratch));
-    if (grown->count == 0)
+    ISO_TRY(iso_offset(&n->next, region, &options, n->scratch));
+    if (n->next.count == 0)
         return iso_fail(ISO_OUTSIDE, "an object is too thin to be arranged");
-    int32_t count = grown->first[1];
-    ISO_TRY(ISO_ALLOCATE(k->wide, 2 * (int64_t)count + 1));
-    k->wide_count = hull_of(k->wide, grown->point, count);
-    k->wide_count = hull_thin(k->wide, k->wide_count, THIN, k->wide + count + 1);
     return ISO_OK;
+}
+
+/* The hull grown by the distance. */
+static iso_status widen_hull(kind *k, nester *n) {
+    iso_region_clear(&n->obstacles);
+    ISO_TRY(iso_region_add(&n->obstacles, k->hull.point, k->hull.first[1]));
+    ISO_TRY(iso_region_clean(&n->free, &n->obstacles, ISO_FILL_NONZERO, n->scratch));
+    ISO_TRY(grow(n, &n->free, n->nest->distance - SLACK));
+    return one_piece(&k->wide_hull, n->next.point, n->next.first[1]);
+}
+
+/* Pieces of an outline that isn't convex, grown by a distance: first by what thinning may take. */
+static iso_status cut_up(iso_pieces *pieces, nester *n, const iso_region *outline,
+                         int32_t distance) {
+    ISO_TRY(grow(n, outline, distance + COARSE));
+    ISO_TRY(iso_region_simplify(&n->free, &n->next, COARSE, n->scratch));
+    return outline_pieces(pieces, &n->free);
 }
 
 static iso_status make_kind(kind *k, nester *n, const iso_nest_shape *shape) {
@@ -88,12 +109,34 @@ static iso_status make_kind(kind *k, nester *n, const iso_nest_shape *shape) {
         box_add(&box, shape->hull[i]);
     k->middle = (iso_point){box.min.x + (box.max.x - box.min.x) / 2,
                             box.min.y + (box.max.y - box.min.y) / 2};
-    ISO_TRY(copy_points(&k->thin, shape->hull, shape->corners));
-    iso_point *room;
-    ISO_TRY(ISO_ALLOCATE(room, shape->corners));
-    k->thin_count = hull_thin(k->thin, shape->corners, THIN, room);
-    iso_release(room);
-    return widen(k, n, shape);
+    ISO_TRY(one_piece(&k->hull, shape->hull, shape->corners));
+    ISO_TRY(widen_hull(k, n));
+    if (!shape->outline)
+        return ISO_OK;
+    ISO_TRY(cut_up(&k->thin, n, shape->outline, 0));
+    ISO_TRY(cut_up(&k->wide, n, shape->outline, n->nest->distance - SLACK));
+    if (k->thin.count <= PIECES && k->wide.count <= PIECES)
+        return ISO_OK;
+    outline_pieces_free(&k->thin);
+    outline_pieces_free(&k->wide);
+    return ISO_OK;
+}
+
+static const iso_pieces *thin_of(const kind *k) {
+    return k->thin.count > 0 ? &k->thin : &k->hull;
+}
+
+static const iso_pieces *wide_of(const kind *k) {
+    return k->wide.count > 0 ? &k->wide : &k->wide_hull;
+}
+
+static int32_t most_corners(const iso_pieces *pieces) {
+    int32_t most = 0;
+    for (int32_t i = 0; i < pieces->count; i++) {
+        int32_t corners = pieces->first[i + 1] - pieces->first[i];
+        most = corners > most ? corners : most;
+    }
+    return most;
 }
 
 /* A stretch of the bed's edge takes the places where the outline would meet it: the hull of what
@@ -185,14 +228,33 @@ static choice choose(const nester *n, const plan *p, iso_point target) {
 
 /* ---- placing ---- */
 
-static iso_status add_obstacle(nester *n, const kind *placed, iso_point at, const kind *next) {
-    int32_t count =
-        hull_difference(n->sum, placed->wide, placed->wide_count, next->thin, next->thin_count);
-    for (int32_t i = 0; i < count; i++) {
-        n->sum[i].x += at.x;
-        n->sum[i].y += at.y;
+/* n->pair: where one of `next` may not stand because one of `placed` stands at (0, 0): the union of
+ * what their pieces forbid each other. */
+static iso_status find_pair(nester *n, const kind *placed, const kind *next) {
+    const iso_pieces *a = wide_of(placed), *b = thin_of(next);
+    iso_region *sums = &n->next;
+    iso_region_clear(sums);
+    for (int32_t i = 0; i < a->count; i++)
+        for (int32_t j = 0; j < b->count; j++) {
+            int32_t count =
+                hull_difference(n->sum, a->point + a->first[i], a->first[i + 1] - a->first[i],
+                                b->point + b->first[j], b->first[j + 1] - b->first[j]);
+            ISO_TRY(iso_region_add(sums, n->sum, count));
+        }
+    return iso_region_clean(&n->pair, sums, ISO_FILL_NONZERO, n->scratch);
+}
+
+static iso_status add_obstacle(nester *n, iso_point at) {
+    iso_region *all = &n->obstacles;
+    for (int32_t c = 0; c < n->pair.count; c++) {
+        int32_t from = n->pair.first[c], count = n->pair.first[c + 1] - from;
+        ISO_TRY(iso_region_add(all, n->pair.point + from, count));
+        for (int32_t i = all->first[all->count - 1]; i < all->first[all->count]; i++) {
+            all->point[i].x += at.x;
+            all->point[i].y += at.y;
+        }
     }
-    return iso_region_add(&n->obstacles, n->sum, count);
+    return ISO_OK;
 }
 
 static iso_status subtract(nester *n) {
@@ -204,7 +266,7 @@ static iso_status subtract(nester *n) {
 }
 
 /* Where the shape may stand among all that are placed already: those before it in turn, and `own`
- * copies of its own. */
+ * copies of its own. Leaves the pair of two of its own. */
 static iso_status find_free(nester *n, int32_t turn, int32_t own) {
     const kind *k = &n->kind[n->turn[turn]];
     iso_region_clear(&n->free);
@@ -215,11 +277,13 @@ static iso_status find_free(nester *n, int32_t turn, int32_t own) {
     iso_region_clear(&n->obstacles);
     for (int32_t t = 0; t < turn; t++) {
         int32_t other = n->turn[t];
+        ISO_TRY(find_pair(n, &n->kind[other], k));
         for (int32_t i = n->first[other]; i < n->first[other + 1]; i++)
-            ISO_TRY(add_obstacle(n, &n->kind[other], n->by[i], k));
+            ISO_TRY(add_obstacle(n, n->by[i]));
     }
+    ISO_TRY(find_pair(n, k, k));
     for (int32_t i = 0; i < own; i++)
-        ISO_TRY(add_obstacle(n, k, n->by[n->first[n->turn[turn]] + i], k));
+        ISO_TRY(add_obstacle(n, n->by[n->first[n->turn[turn]] + i]));
     return subtract(n);
 }
 
@@ -228,7 +292,8 @@ static iso_status place_rows(int32_t *placed, nester *n, iso_point target) {
     int32_t s = n->turn[0];
     const kind *k = &n->kind[s];
     iso_lattice_space space = {.apart = n->sum, .inside = &k->inside, .target = target};
-    space.corners = hull_difference(n->sum, k->wide, k->wide_count, k->thin, k->thin_count);
+    space.corners = hull_difference(n->sum, k->wide_hull.point, k->wide_hull.first[1],
+                                    k->hull.point, k->hull.first[1]);
     return lattice_places(n->by + n->first[s], placed, n->first[s + 1] - n->first[s], &space);
 }
 
@@ -251,7 +316,7 @@ static iso_status follow(int32_t *placed, int32_t *left, nester *n, const plan *
             if (i + 1 == n->first[s + 1])
                 continue;
             iso_region_clear(&n->obstacles);
-            ISO_TRY(add_obstacle(n, k, best.at, k));
+            ISO_TRY(add_obstacle(n, best.at));
             ISO_TRY(subtract(n));
         }
     }
@@ -329,7 +394,12 @@ static iso_status prepare(nester *n) {
     ISO_TRY(ISO_ALLOCATE(n->best, n->first[nest->shapes]));
     for (int32_t s = 0; s < nest->shapes; s++) {
         ISO_TRY(make_kind(&n->kind[s], n, &nest->shape[s]));
-        most = n->kind[s].wide_count > most ? n->kind[s].wide_count : most;
+        int32_t corners = most_corners(wide_of(&n->kind[s]));
+        most = corners > most ? corners : most;
+        corners = most_corners(thin_of(&n->kind[s]));
+        most = corners > most ? corners : most;
+        corners = most_corners(&n->kind[s].wide_hull);
+        most = corners > most ? corners : most;
     }
     ISO_TRY(ISO_ALLOCATE(n->sum, 4 * (int64_t)most + 1));
     for (int32_t s = 0; s < nest->shapes; s++)
@@ -362,8 +432,10 @@ iso_status nest_shapes(iso_point *by, int32_t *placed, int32_t *left, const iso_
     nester n = {.nest = nest, .scratch = scratch};
     iso_status status = run(by, placed, left, &n);
     for (int32_t s = 0; n.kind && s < nest->shapes; s++) {
-        iso_release(n.kind[s].thin);
-        iso_release(n.kind[s].wide);
+        outline_pieces_free(&n.kind[s].thin);
+        outline_pieces_free(&n.kind[s].wide);
+        outline_pieces_free(&n.kind[s].hull);
+        outline_pieces_free(&n.kind[s].wide_hull);
         iso_region_free(&n.kind[s].inside);
     }
     iso_release(n.kind);
@@ -375,5 +447,6 @@ iso_status nest_shapes(iso_point *by, int32_t *placed, int32_t *left, const iso_
     iso_region_free(&n.free);
     iso_region_free(&n.next);
     iso_region_free(&n.obstacles);
+    iso_region_free(&n.pair);
     return status;
 }

@@ -1,4 +1,4 @@
-/* Nesting convex outlines in a region, without turning them. */
+/* Nesting outlines in a region, without turning them. */
 #ifndef ISO_OBJECT_NEST_H
 #define ISO_OBJECT_NEST_H
 
@@ -9,6 +9,7 @@
 typedef struct iso_nest_shape {
     const iso_point *hull; /* see hull.h; three corners at least */
     int32_t corners;
+    const iso_region *outline; /* within the hull; NULL: the hull itself */
     int32_t copies;
 } iso_nest_shape;
 

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "object/nest.h"
+#include "object/outline.h"
 
 void iso_instances_free(iso_instances *instances) {
     iso_release(instances->instance);
@@ -12,6 +13,9 @@ void iso_instances_free(iso_instances *instances) {
 
 /* Units that the bed is smaller, so that nothing is rounded beyond its edge. */
 enum { ROUNDING = 2 };
+
+/* Share of its hull that an outline fills, from which on the hull is nested. */
+#define WORTH_IT 0.9
 
 typedef struct placer {
     const iso_placing *placing;
@@ -125,22 +129,38 @@ static iso_status nest(placer *p, const iso_nest *nest, iso_point *by) {
     return ISO_OK;
 }
 
-static iso_status arrange(placer *p, int32_t copies) {
+/* What the outline leaves free of the hull decides whether it is worth the trouble. */
+static iso_status find_shape(iso_nest_shape *shape, iso_region *outline, const placer *p,
+                             int32_t number) {
+    const iso_object *object = &p->objects->object[number];
+    shape->hull = object->hull.point;
+    shape->corners = object->hull.first[1];
+    if (p->placing->by_hull)
+        return ISO_OK;
+    ISO_TRY(outline_of(outline, object->mesh, object->mesh_count, p->scratch));
+    double covered = (double)iso_region_double_area(outline);
+    if (covered > 0 && covered < WORTH_IT * (double)iso_region_double_area(&object->hull))
+        shape->outline = outline;
+    return ISO_OK;
+}
+
+static iso_status find_shapes(iso_nest_shape *shape, iso_region *outline, const placer *p,
+                              int32_t copies) {
+    for (int32_t i = 0; i < p->objects->count; i++) {
+        shape[i] = (iso_nest_shape){.copies = copies};
+        ISO_TRY(find_shape(&shape[i], &outline[i], p, i));
+    }
+    return ISO_OK;
+}
+
+static iso_status arrange_shapes(placer *p, iso_nest_shape *shape, iso_region *outline,
+                                 int32_t copies) {
     iso_region raw = {0}, bed = {0};
-    iso_nest_shape *shape = NULL;
-    iso_point *by = NULL;
-    ISO_TRY(iso_objects_find_hulls(p->objects));
-    ISO_TRY(new_instances(p, copies));
-    iso_status status = ISO_ALLOCATE(shape, p->objects->count);
-    if (status == ISO_OK)
-        status = ISO_ALLOCATE(by, p->instances->count);
-    if (status == ISO_OK)
-        status = make_bed(&bed, &raw, p);
+    iso_point *by;
+    ISO_TRY(find_shapes(shape, outline, p, copies));
+    ISO_TRY(ISO_ALLOCATE(by, p->instances->count));
+    iso_status status = make_bed(&bed, &raw, p);
     if (status == ISO_OK) {
-        for (int32_t i = 0; i < p->objects->count; i++) {
-            const iso_region *hull = &p->objects->object[i].hull;
-            shape[i] = (iso_nest_shape){hull->point, hull->first[1], copies};
-        }
         iso_nest all = {.shape = shape,
                         .shapes = p->objects->count,
                         .bed = &bed,
@@ -148,10 +168,28 @@ static iso_status arrange(placer *p, int32_t copies) {
                         .target = {iso_units(p->middle.x), iso_units(p->middle.y)}};
         status = nest(p, &all, by);
     }
-    iso_release(shape);
     iso_release(by);
     iso_region_free(&raw);
     iso_region_free(&bed);
+    return status;
+}
+
+static iso_status arrange(placer *p, int32_t copies) {
+    iso_nest_shape *shape;
+    iso_region *outline;
+    int32_t count = p->objects->count;
+    ISO_TRY(iso_objects_find_hulls(p->objects));
+    ISO_TRY(new_instances(p, copies));
+    ISO_TRY(ISO_ALLOCATE(shape, count));
+    iso_status status = ISO_ALLOCATE(outline, count);
+    if (status == ISO_OK) {
+        memset(outline, 0, (size_t)count * sizeof *outline);
+        status = arrange_shapes(p, shape, outline, copies);
+        for (int32_t i = 0; i < count; i++)
+            iso_region_free(&outline[i]);
+        iso_release(outline);
+    }
+    iso_release(shape);
     return status;
 }
 
