@@ -51,6 +51,14 @@ def choose_options(random, traits):
         options["layer-heights"] = ",".join(
             f"{v:.3f}" for v in numpy.minimum(random.uniform(0.05, 0.6, random.integers(1, 9)),
                                               min(nozzle, width * 0.9)))
+    if "solid" not in traits and random.random() < 0.6:
+        options.update({
+            "top-solid-min-thickness": pick(0, 0.7, 30), "bottom-solid-min-thickness": pick(0, 1, 30),
+            "ensure-vertical-shell-thickness": int(pick(0, 1)), "overhangs": int(pick(0, 1)),
+            "solid-infill-every-layers": int(pick(0, 1, 2, 7)),
+            "solid-infill-below-area": pick(0, 5, 70, 100000), "bridge-angle": pick(0, 33, 180),
+            "bridge-flow-ratio": pick(0.1, 0.8, 2), "thick-bridges": int(pick(0, 1)),
+        })
     flags = [pick("--use-relative-e-distances", "--no-use-relative-e-distances"),
              pick("--external-perimeters-first", "--no-external-perimeters-first")]
     if "solid" in traits:
