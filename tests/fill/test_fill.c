@@ -507,6 +507,42 @@ static void test_starts_of_contours_do_not_matter(void) {
     iso_arena_free(&scratch);
 }
 
+/* All that a fill can be asked for at once, on regions that branch, pinch and have holes: beads
+ * have a size, and middles stay within reach of the region. */
+static void test_options_together(void) {
+    iso_arena scratch = {0};
+    for (unsigned seed = 0; seed < 160; seed++) {
+        iso_region region = {0};
+        iso_paths paths = {0};
+        if (seed % 5) {
+            cells grid = cells_random(seed + 77, 50);
+            cells_region(&region, &grid, seed % 3 ? 9000 : 2500, seed % 2 ? 900 : 0);
+        } else {
+            shapes[seed / 5 % (unsigned)shape_count].make(&region, seed);
+        }
+        iso_fill_options options = bare_options(seed % 7 ? 4070 : 1900, seed * 11.25, seed % 4 > 0);
+        options.margin = (int32_t)(options.spacing * (seed % 6) / 10) - 400;
+        options.even = seed % 13 == 0;
+        options.monotonic = seed % 3 == 1;
+        options.anchor = seed % 4 == 0 || seed % 11 == 0 ? 9000 : 0;
+        options.link_max = seed % 10 ? (int32_t)(seed % 9) * 3000 : 1000000;
+        options.deviation = seed % 8 * 20;
+        CHECK_OK(iso_fill_rectilinear(&paths, &region, &options, &scratch));
+        double reach = 2 * fmax(options.margin, 0) + options.deviation + 2;
+        int outside = 0, sizeless = 0;
+        for (int i = 0; i < paths.vertex_count; i++) {
+            const iso_path_vertex *v = &paths.vertex[i];
+            outside += !is_inside(&region, v->at.x, v->at.y, reach);
+            sizeless += v->width < 100 || v->area < 100000;
+        }
+        CHECK_EQUAL(0, outside);
+        CHECK_EQUAL(0, sizeless);
+        iso_paths_free(&paths);
+        drop_region(&region);
+    }
+    iso_arena_free(&scratch);
+}
+
 static void test_little_regions(void) {
     static const iso_point line[] = {{0, 0}, {5000, 0}}, speck[] = {{7, 7}, {8, 7}, {7, 8}};
     iso_arena scratch = {0};
@@ -612,6 +648,7 @@ int main(void) {
     RUN(test_links_are_no_longer_than_allowed);
     RUN(test_anchors);
     RUN(test_starts_of_contours_do_not_matter);
+    RUN(test_options_together);
     RUN(test_little_regions);
     RUN(test_refusals);
     RUN(test_failing_allocations);
