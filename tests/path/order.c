@@ -324,11 +324,50 @@ static void test_without_memory(void) {
     iso_paths_free(&in);
 }
 
+/* Chains among other fill stay whole, forwards or backwards, wherever their members begin. */
+static void test_chains_stay_whole(void) {
+    enum { CHAINS = 12, LINKS = 5, LOOSE = 20 };
+    iso_paths in = {0}, out = {0};
+    iso_arena arena = {0};
+    iso_point at = {0, 0};
+    seed = 5;
+    for (int i = 0; i < CHAINS * LINKS + LOOSE; i++) {
+        iso_point point[2];
+        int chained = i < CHAINS * LINKS;
+        for (int k = 0; k < 2; k++)
+            point[k] = (iso_point){random_below(1000000), random_below(1000000)};
+        iso_path like = {.role = ISO_ROLE_TOP_SOLID_INFILL,
+                         .rank = chained ? i % LINKS : 0,
+                         .follows = chained && i % LINKS > 0};
+        CHECK_OK(iso_paths_add(&in, &like, point, 2, i, 1));
+    }
+    CHECK_OK(order_layer(&out, &in, &at, &arena));
+    CHECK_EQUAL(in.count, out.count);
+    for (int32_t i = 0; i < out.count; i++) {
+        const iso_path_vertex *v = out.vertex + out.path[i].first;
+        int32_t id = v->width, step = 0;
+        if (id >= CHAINS * LINKS)
+            continue;
+        int32_t reversed = v->at.x != in.vertex[in.path[id].first].at.x;
+        CHECK_EQUAL(reversed ? LINKS - 1 : 0, id % LINKS);
+        for (step = 1; step < LINKS; step++) {
+            const iso_path_vertex *w = out.vertex + out.path[i + step].first;
+            CHECK_EQUAL(id + (reversed ? -step : step), w->width);
+            CHECK_EQUAL(reversed, w->at.x != in.vertex[in.path[w->width].first].at.x);
+        }
+        i += LINKS - 1;
+    }
+    iso_paths_free(&in);
+    iso_paths_free(&out);
+    iso_arena_free(&arena);
+}
+
 int main(void) {
     RUN(test_random_layers_follow_the_rule);
     RUN(test_degenerate_spreads);
     RUN(test_solid_fill_goes_forth_and_back);
     RUN(test_anything_goes);
+    RUN(test_chains_stay_whole);
     RUN(test_nothing_and_empty_paths);
     RUN(test_without_memory);
     return check_verdict();

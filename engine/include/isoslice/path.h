@@ -51,6 +51,9 @@ typedef struct iso_path {
     int32_t object;
     int32_t group; /* paths of one group are printed together; groups in any order (an island) */
     int32_t rank;  /* within a group lower ranks first (walls before infill) */
+    uint8_t
+        follows; /* nonzero: right after the fill path before it, or all of such a chain backwards
+                  */
 
     /* Of ordered layers only: how the nozzle comes here. */
     uint8_t retract;                    /* iso_retraction */

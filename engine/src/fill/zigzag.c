@@ -234,7 +234,10 @@ static iso_status add_run(iso_paths *out, zigzag *run) {
     like.closed = 0;
     if (is_short(run))
         return ISO_OK;
-    like.rank += run->waiting ? run->runs++ : 0; /* one after another */
+    if (run->waiting) { /* one after another */
+        like.follows = run->runs > 0;
+        like.rank += run->runs++;
+    }
     run->point[0] = drawn_out(run, run->point[0], run->end[0]);
     run->point[run->count - 1] = drawn_out(run, run->point[run->count - 1], run->end[1]);
     int32_t at = out->vertex_count;

@@ -38,11 +38,13 @@ static iso_status order_ranks(iso_ordering *o, iso_run phase) {
 /* Where a closed path of the fill begins depends on where the nozzle comes from, so a tour can plan
  * with a few of them at most. */
 static iso_status order_fill(iso_ordering *o, iso_run fill) {
-    int32_t closed = 0;
-    for (int32_t k = fill.begin; k < fill.end; k++)
+    int32_t closed = 0, chained = 0;
+    for (int32_t k = fill.begin; k < fill.end; k++) {
         closed += ordering_path(o, k)->closed;
-    return closed > (fill.end - fill.begin) / 4 ? ordering_nearest(o, fill)
-                                                : ordering_tour(o, fill);
+        chained += ordering_path(o, k)->follows;
+    }
+    return closed > (fill.end - fill.begin) / 4 && !chained ? ordering_nearest(o, fill)
+                                                            : ordering_tour(o, fill);
 }
 
 static iso_status order_phase(iso_ordering *o, iso_run phase) {

@@ -88,8 +88,10 @@ static iso_status order(iso_ordering *o) {
     for (int32_t i = 0; i < count; i++) {
         const iso_path *path = &o->in->path[i];
         int32_t phase = phase_of((iso_role)path->role, o->options->infill_first);
+        int fill = phase == PHASE_FILL || phase == PHASE_EARLY_FILL;
         if (path->count > 0)
-            o->key[o->count++] = (iso_order_key){path->object, path->group, phase, path->rank, i};
+            o->key[o->count++] =
+                (iso_order_key){path->object, path->group, phase, fill ? 0 : path->rank, i};
     }
     if (o->count == 0)
         return ISO_OK;

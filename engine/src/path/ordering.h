@@ -66,7 +66,8 @@ void ordering_emit_from(iso_ordering *o, int32_t k, iso_seam_place seam);
  * came first. */
 iso_status ordering_nearest(iso_ordering *o, iso_run r) ISO_MUST_CHECK;
 
-/* Paths by a tour, in which closed ones stand where their first vertex is. */
+/* Paths by a tour, in which closed ones stand where their first vertex is, and chains of paths that
+ * follow each other count as one. */
 iso_status ordering_tour(iso_ordering *o, iso_run r) ISO_MUST_CHECK;
 
 /* A vertex at which a path may begin: of open ones both ends, of those whose seam is decided that

@@ -98,28 +98,45 @@ static int32_t nearest_vertex(const iso_ordering *o, int32_t k) {
     return best.vertex;
 }
 
+static iso_point first_of(const iso_ordering *o, int32_t k) {
+    return ordering_vertex(o, k)[0].at;
+}
+
+static iso_point last_of(const iso_ordering *o, int32_t k) {
+    const iso_path *path = ordering_path(o, k);
+    return ordering_vertex(o, k)[path->closed ? 0 : path->count - 1].at;
+}
+
+/* The paths from key `begin` to `end`, which follow each other; `back` is from the last one's end.
+ */
+static void emit_chain(iso_ordering *o, int32_t begin, int32_t end, int back) {
+    for (int32_t n = 0; n < end - begin; n++) {
+        int32_t k = back ? end - 1 - n : begin + n;
+        const iso_path *path = ordering_path(o, k);
+        ordering_emit(o, k, path->closed ? nearest_vertex(o, k) : back ? path->count - 1 : 0);
+    }
+}
+
 iso_status ordering_tour(iso_ordering *o, iso_run r) {
     iso_arena_mark mark = iso_arena_get_mark(o->scratch);
-    int32_t count = r.end - r.begin, *tour;
+    int32_t count = 0, *tour, *chain;
     iso_stop *stop;
-    ISO_TRY(ISO_PUSH(stop, o->scratch, count));
-    ISO_TRY(ISO_PUSH(tour, o->scratch, count));
-    for (int32_t k = 0; k < count; k++) {
-        const iso_path *path = ordering_path(o, r.begin + k);
-        const iso_path_vertex *vertex = ordering_vertex(o, r.begin + k);
-        stop[k] = (iso_stop){vertex[0].at, vertex[path->closed ? 0 : path->count - 1].at};
+    ISO_TRY(ISO_PUSH(stop, o->scratch, r.end - r.begin));
+    ISO_TRY(ISO_PUSH(tour, o->scratch, r.end - r.begin));
+    ISO_TRY(ISO_PUSH(chain, o->scratch, (int64_t)r.end - r.begin + 1));
+    for (int32_t k = r.begin; k < r.end; k++) {
+        if (count == 0 || !ordering_path(o, k)->follows) {
+            chain[count] = k;
+            stop[count++].a = first_of(o, k);
+        }
+        stop[count - 1].b = last_of(o, k);
     }
+    chain[count] = r.end;
     iso_tour_frame frame = {o->position, o->end, o->ends};
     ISO_TRY(iso_tour_nearest(tour, stop, count, o->position, o->scratch));
     ISO_TRY(iso_tour_improve(tour, stop, count, &frame, &o->cost, o->scratch));
-    for (int32_t n = 0; n < count; n++) {
-        int32_t k = r.begin + (tour[n] >> 1);
-        const iso_path *path = ordering_path(o, k);
-        ordering_emit(o, k,
-                      path->closed  ? nearest_vertex(o, k)
-                      : tour[n] & 1 ? path->count - 1
-                                    : 0);
-    }
+    for (int32_t n = 0; n < count; n++)
+        emit_chain(o, chain[tour[n] >> 1], chain[(tour[n] >> 1) + 1], tour[n] & 1);
     iso_arena_pop(o->scratch, mark);
     return ISO_OK;
 }
