@@ -285,8 +285,8 @@ static void order_all(void *payload) {
     iso_order_options order = settings_of_order(s->part.options);
     s->bytes = 0;
     for (int32_t i = 0; i < s->part.levels.count; i++) {
-        bench_must(iso_order_layer(&s->ordered[i], &s->part.window.layer[i].paths, &state,
-                                   &order, &s->part.hand.arena),
+        bench_must(iso_order_layer(&s->ordered[i], &s->part.window.layer[i].paths, &state, &order,
+                                   &s->part.hand.arena),
                    "order");
         s->bytes += 2 * bytes_of_paths(&s->ordered[i]);
     }
