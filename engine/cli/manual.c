@@ -7,6 +7,8 @@
 #include "config/value.h"
 #include "verbs.h"
 
+#define RANGE_SIZE 320 /* of the longest list of words with room for more */
+
 static const char *const verb_usage[] = {
     "isoslice [slice] [options] part.stl [more.stl...] [-o part.gcode]",
     "isoslice contours [options] part.stl [more.stl...] [-o part.mlk|part.json|part.svg]",
@@ -124,7 +126,7 @@ static void list_options(void) {
     printf("%-34s  %-24s  %-9s  %-18s  %s\n", "key", "default", "unit", "range", "meaning");
     for (int32_t i = 0; i < iso_option_count(); i++) {
         const iso_option_info *info = iso_option_at(i);
-        char range[64], unit[32], initial[32];
+        char range[RANGE_SIZE], unit[32], initial[32];
         if (strcmp(category, info->category) != 0)
             printf("\n%s\n", info->category);
         category = info->category;
@@ -145,7 +147,7 @@ static void list_options_markdown(void) {
            "`isoslice --list-options=markdown`.\n");
     for (int32_t i = 0; i < iso_option_count(); i++) {
         const iso_option_info *info = iso_option_at(i);
-        char range[64], unit[32];
+        char range[RANGE_SIZE], unit[32];
         if (strcmp(category, info->category) != 0)
             printf("\n## %s\n\n| key | default | unit | range | meaning |\n|---|---|---|---|---|\n",
                    info->category);
@@ -206,7 +208,7 @@ static void man_options(void) {
                "by --no-cooling.");
     for (int32_t i = 0; i < iso_option_count(); i++) {
         const iso_option_info *info = iso_option_at(i);
-        char range[64], unit[32], name[64];
+        char range[RANGE_SIZE], unit[32], name[64];
         if (strcmp(category, info->category) != 0)
             printf(".SS %s\n", info->category);
         category = info->category;
@@ -214,7 +216,7 @@ static void man_options(void) {
         printf(".TP\n");
         print_roff(flag_name(name, info->key));
         print_roff(info->help);
-        char text[256];
+        char text[RANGE_SIZE + 256];
         snprintf(text, sizeof text, *info->initial ? "(%s%s%s; default %s)" : "(%s%s%s)", range,
                  *info->unit ? " " : "", unit_of(unit, info), info->initial);
         if (info->kind != ISO_VALUE_TEXT) {
