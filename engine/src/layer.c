@@ -168,6 +168,14 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
     ISO_TRY(iso_offset(&hand->inside, part, &inset, hand->planar));
     ISO_TRY(check(&hand->inside, hand));
     grouped.like.group = group;
+    if (f->layer->settings.gap.least > 0 && fill->like.role != ISO_ROLE_IRONING &&
+        fill->like.role != ISO_ROLE_BRIDGE_INFILL) {
+        iso_gap_options gap = f->layer->settings.gap;
+        gap.like.group = group;
+        iso_gap_reach reach = {f->layer->settings.fill_inset, -f->layer->settings.wall.fill_inset};
+        ISO_TRY(iso_gap_fill_left(&f->layer->paths, part, &hand->inside, &reach, &gap,
+                                  hand->planar));
+    }
     grouped.margin = f->layer->settings.fill_inset;
     return iso_fill(&f->layer->paths, &hand->inside, &grouped, &hand->arena, hand->planar);
 }

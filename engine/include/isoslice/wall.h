@@ -43,11 +43,27 @@ ISO_API iso_status iso_gap_fill(iso_paths *paths, const iso_region *gap,
                                 const iso_gap_options *options,
                                 struct iso_arena *scratch) ISO_MUST_CHECK;
 
+/* Gaps to fill with a bead's height, from `least` units of width up to two spacings; beads of at
+ * least 1.5 widths. */
+ISO_API iso_gap_options iso_gap_defaults(const iso_bead *bead, int32_t least);
+
 /* Set `left` to what of `region` no round brush of that radius reaches, given `reached`, where its
  * middle may go: `region` shrunk by the radius. */
 ISO_API iso_status iso_gap_left(iso_region *left, const iso_region *region,
                                 const iso_region *reached, int32_t radius,
                                 iso_planar_scratch *scratch) ISO_MUST_CHECK;
+
+typedef struct iso_gap_reach {
+    int32_t distance; /* units by which `region` was shrunk to get `reached` */
+    int32_t taken;    /* of those, units next to its contours that other beads cover */
+} iso_gap_reach;
+
+/* Fill what beads along `reached`, or lines within it, leave open in `region`. Costs next to
+ * nothing where no place is narrow. */
+ISO_API iso_status iso_gap_fill_left(iso_paths *paths, const iso_region *region,
+                                     const iso_region *reached, const iso_gap_reach *reach,
+                                     const iso_gap_options *options,
+                                     iso_planar_scratch *scratch) ISO_MUST_CHECK;
 
 /* Append the walls of `island` (a region) to `paths`, closed, outer ones counter-clockwise and
  * those around holes clockwise, ranked in printing order from rank 0 to count - 1; loops shorter

@@ -110,6 +110,9 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
         s->sparse.link_max = iso_units(iso_relative_of(options->infill_anchor_max, width));
     }
     s->fill_inset = solid.spacing / 2 - overlap_of(s, options, first, height);
+    s->gap = iso_gap_defaults(&solid, s->wall.gap_least);
+    s->gap.like.rank = options->perimeters;
+    s->gap.shortest = 6; /* what lines leave open is narrow, and never wide enough to be seen */
 }
 
 /* Lines so close that the nozzle's face smooths what is there, with little of their own. */

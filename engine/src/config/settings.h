@@ -19,6 +19,7 @@ typedef struct iso_layer_settings {
     iso_compensation compensation;
     iso_wall_options wall;
     iso_fuzzy_options fuzzy;
+    iso_gap_options gap;  /* of what the fill leaves open; least 0: stays open */
     int32_t fill_inset; /* units from the edge of a filled area to the middles of its lines */
     iso_shell_options shell;
     int32_t coarse; /* units by which the outlines that shells look at are thinned */

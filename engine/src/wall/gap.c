@@ -3,12 +3,19 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "planar/region.h"
+#include "planar/scratch.h"
+#include "wall/gap.h"
 #include "wall/medial.h"
+#include "wall/reach.h"
 
 /* A bead keeps its width while the place's is within this share of it, and its direction while the
  * middle is within so many units. */
 #define WIDTH_STEP 0.06
 enum { DEVIATION = 40, RUN_MAX = 128 };
+
+/* Of a bead seen from above, units^2: 0.02 mm^2 are not worth the travel. */
+#define LEAST_AREA 2e6
 
 /* How far from a blunt end a bead ends, in widths: half of one, and its round end would touch;
  * none, and it would hold the place's volume. */
@@ -150,7 +157,7 @@ static bool is_worth(const iso_gapping *g, const iso_medial_line *line) {
     if (g->options->outline && line->count == 1)
         return line->blunt[1];
     double ends = (line->blunt[0] + line->blunt[1]) * room_at(g, point) * (0.5 - END_SHARE);
-    return length > 0 && (length + ends) * (length + ends) >= g->options->shortest * area;
+    return area >= LEAST_AREA && (length + ends) * (length + ends) >= g->options->shortest * area;
 }
 
 static iso_status draw(iso_gapping *g) {
@@ -185,5 +192,76 @@ iso_status iso_gap_fill(iso_paths *paths, const iso_region *gap, const iso_gap_o
         paths->count = count;
         paths->vertex_count = vertices;
     }
+    return status;
+}
+
+/* ---- what is left over ---- */
+
+/* Rounding and the arcs' corners may leave a seam of this many units between what was shrunk and
+ * grown again. */
+enum { SEAM = 20 };
+
+iso_status iso_gap_left(iso_region *left, const iso_region *region, const iso_region *reached,
+                        int32_t radius, iso_planar_scratch *scratch) {
+    iso_region grown = {0};
+    iso_offset_options grow = iso_offset_defaults(radius + SEAM);
+    grow.join = ISO_JOIN_ROUND;
+    iso_status status = iso_offset(&grown, reached, &grow, scratch);
+    if (status == ISO_OK)
+        status = iso_boolean(left, ISO_DIFFERENCE, region, &grown, scratch);
+    iso_region_free(&grown);
+    return status;
+}
+
+void gap_drop_small(iso_region *region, double width) {
+    int32_t count = 0, points = 0;
+    for (int32_t c = 0; c < region->count; c++) {
+        const iso_point *point = region->point + region->first[c];
+        int32_t size = region->first[c + 1] - region->first[c];
+        double area = (double)contour_double_area(point, size) / 2;
+        if (area >= 0 && area < 0.785 * width * width)
+            continue;
+        memmove(region->point + points, point, (size_t)size * sizeof *point);
+        points += size;
+        region->parent[count++] = -1;
+        region->first[count] = points;
+    }
+    region->count = count;
+}
+
+iso_gap_options iso_gap_defaults(const iso_bead *bead, int32_t least) {
+    return (iso_gap_options){.height = bead->height,
+                             .least = least,
+                             .most = 2 * bead->spacing,
+                             .step = 900,
+                             .shortest = 1.5,
+                             .like = {.role = ISO_ROLE_GAP_FILL}};
+}
+
+static iso_status fill_left(iso_paths *paths, iso_region *room, const iso_region *region,
+                            const iso_region *reached, const iso_gap_reach *reach,
+                            const iso_gap_options *options, iso_planar_scratch *scratch) {
+    iso_region *inner = &room[0], *left = &room[1];
+    iso_offset_options taken = iso_offset_defaults(-reach->taken);
+    taken.join = ISO_JOIN_ROUND;
+    if (reach->taken != 0)
+        ISO_TRY(iso_offset(inner, region, &taken, scratch));
+    ISO_TRY(iso_gap_left(left, reach->taken != 0 ? inner : region, reached,
+                         reach->distance - reach->taken, scratch));
+    gap_drop_small(left, options->least);
+    return iso_gap_fill(paths, left, options, &scratch->arena);
+}
+
+iso_status iso_gap_fill_left(iso_paths *paths, const iso_region *region, const iso_region *reached,
+                             const iso_gap_reach *reach, const iso_gap_options *options,
+                             iso_planar_scratch *scratch) {
+    iso_region room[2] = {0};
+    bool missed;
+    ISO_TRY(reach_misses(&missed, region, reached, reach->distance, &scratch->arena));
+    if (!missed)
+        return ISO_OK;
+    iso_status status = fill_left(paths, room, region, reached, reach, options, scratch);
+    iso_region_free(&room[0]);
+    iso_region_free(&room[1]);
     return status;
 }

@@ -7,7 +7,7 @@
 /* Cells, marked up to REACH around each that `reached` passes: at 0.55 radii a cell, all within 1.4
  * radii in x and y, and nothing beyond 3.2. Corners of 80 degrees and more stay within
  * that. */
-enum { REACH = 3, CELLS_MAX = 1 << 26 };
+enum { REACH = 3, CELLS_MAX = 1 << 26, CORNER_CELLS = 5, RUN_CELLS = 4 };
 
 typedef struct iso_marks {
     iso_point origin;
@@ -38,26 +38,43 @@ static bool is_marked(const iso_marks *m, int32_t column, int32_t row) {
     return m->mark[(int64_t)row * m->words + (column >> 6)] >> (column & 63) & 1;
 }
 
+/* Is point i of the contour a sharp corner of the region, but not as sharp as a tip that gets a
+ * bead of its own? The next wall turns far from its end, and nothing is missing there. */
+static bool is_corner(const iso_point *point, int32_t count, int32_t i) {
+    iso_point a = point[i == 0 ? count - 1 : i - 1], b = point[i];
+    iso_point c = point[i + 1 == count ? 0 : i + 1];
+    double ux = (double)b.x - a.x, uy = (double)b.y - a.y;
+    double vx = (double)c.x - b.x, vy = (double)c.y - b.y;
+    double along = ux * vx + uy * vy, turn = ux * vy - uy * vx;
+    return turn > 0 && along < 0.2 * turn && -along < 1.2 * turn; /* 80 to 40 degrees */
+}
+
 /* Go along the contours in steps of a cell: mark, or look for a place without a mark. */
 static bool walk(iso_marks *m, const iso_region *region, bool marking) {
     double scale = 1 / m->cell;
     for (int32_t c = 0; c < region->count; c++) {
-        int32_t end = region->first[c + 1];
-        iso_point a = region->point[end - 1];
-        for (int32_t i = region->first[c]; i < end; i++) {
-            iso_point b = region->point[i];
+        const iso_point *point = region->point + region->first[c];
+        int32_t count = region->first[c + 1] - region->first[c];
+        int32_t run = 0;
+        for (int32_t i = 0, last = count - 1; i < count; last = i++) {
+            iso_point a = point[last], b = point[i];
             double x = (a.x - m->origin.x) * scale, y = (a.y - m->origin.y) * scale;
             double dx = (b.x - a.x) * scale, dy = (b.y - a.y) * scale;
             double longer = fabs(dx) > fabs(dy) ? fabs(dx) : fabs(dy);
-            int32_t steps = (int32_t)longer + 1;
-            for (int32_t k = 0; k < steps; k++) {
+            int32_t steps = (int32_t)longer + 1, from = 0, to = steps;
+            if (!marking && is_corner(point, count, last))
+                from = CORNER_CELLS;
+            if (!marking && is_corner(point, count, i))
+                to -= CORNER_CELLS;
+            for (int32_t k = from; k < to; k++) {
                 int32_t column = (int32_t)(x + dx * k / steps), row = (int32_t)(y + dy * k / steps);
                 if (marking)
                     mark_around(m, column, row);
-                else if (!is_marked(m, column, row))
+                else if (is_marked(m, column, row))
+                    run = 0;
+                else if (++run >= RUN_CELLS)
                     return true;
             }
-            a = b;
         }
     }
     return false;

@@ -6,12 +6,12 @@
 #include "base/memory.h"
 #include "planar/region.h"
 #include "planar/scratch.h"
+#include "wall/gap.h"
 #include "wall/reach.h"
 
 /* Sides of narrow places are looked at in pieces no longer than this, units; beads shorter than so
  * many of their widths are not worth the travel. */
-enum { GAP_STEP = 900, THIN_STEP = 1500 };
-#define GAP_SHORTEST 1.5
+enum { THIN_STEP = 1500 };
 #define THIN_SHORTEST 1.0
 
 static iso_status inset(iso_region *out, const iso_region *in, int32_t distance,
@@ -59,6 +59,8 @@ static int32_t wall_distance(int32_t wall, const iso_wall_options *options) {
     return (before + options->inner.spacing) / 2;
 }
 
+enum { SEAM = 80 }; /* units by which parted loops end before the place that one bead fills */
+
 typedef struct iso_walling {
     iso_paths *paths;
     const iso_wall_options *options;
@@ -67,22 +69,6 @@ typedef struct iso_walling {
     iso_region left;
     bool ahead; /* the second wall is drawn already, and nothing is narrow */
 } iso_walling;
-
-/* Rounding and the arcs' corners may leave a seam of this many units between what was shrunk and
- * grown again. */
-enum { SEAM = 20 };
-
-iso_status iso_gap_left(iso_region *left, const iso_region *region, const iso_region *reached,
-                        int32_t radius, iso_planar_scratch *scratch) {
-    iso_region grown = {0};
-    iso_offset_options grow = iso_offset_defaults(radius + SEAM);
-    grow.join = ISO_JOIN_ROUND;
-    iso_status status = iso_offset(&grown, reached, &grow, scratch);
-    if (status == ISO_OK)
-        status = iso_boolean(left, ISO_DIFFERENCE, region, &grown, scratch);
-    iso_region_free(&grown);
-    return status;
-}
 
 /* Shrink `from` by `distance`, and look whether it is wide everywhere: surely so if the operation
  * was free of collisions and every contour stayed. */
@@ -97,53 +83,29 @@ static iso_status shrink(iso_walling *w, iso_region *to, const iso_region *from,
     return ISO_OK;
 }
 
-/* Leave out what no circle of that width fits into: corners' tips, most of all. Holes stay, since
- * only a contour large enough has any. */
-static void drop_small(iso_region *region, double width) {
-    int32_t count = 0, points = 0;
-    for (int32_t c = 0; c < region->count; c++) {
-        const iso_point *point = region->point + region->first[c];
-        int32_t size = region->first[c + 1] - region->first[c];
-        double area = (double)contour_double_area(point, size) / 2;
-        if (area >= 0 && area < 0.785 * width * width)
-            continue;
-        memmove(region->point + points, point, (size_t)size * sizeof *point);
-        points += size;
-        region->parent[count++] = -1;
-        region->first[count] = points;
-    }
-    region->count = count;
-}
-
 static iso_status fill_gaps(iso_walling *w, const iso_region *at, const iso_region *next,
                             int32_t wall) {
     const iso_wall_options *options = w->options;
-    int32_t distance = wall_distance(wall, options);
     const iso_bead *before = wall == 1 ? &options->external : &options->inner;
-    iso_gap_options gap = {.height = options->inner.height,
-                           .least = options->gap_least,
-                           .most = 2 * options->inner.spacing,
-                           .border = before->spacing,
-                           .step = GAP_STEP,
-                           .shortest = GAP_SHORTEST,
-                           .like = options->like};
+    iso_gap_options gap = iso_gap_defaults(&options->inner, options->gap_least);
+    gap.like = options->like;
     gap.like.role = ISO_ROLE_GAP_FILL;
     gap.like.rank = options->count;
-    ISO_TRY(iso_gap_left(&w->left, at, next, distance, w->scratch));
-    drop_small(&w->left, gap.least + gap.border);
-    return iso_gap_fill(w->paths, &w->left, &gap, &w->scratch->arena);
+    return iso_gap_fill_left(w->paths, at, next,
+                             &(iso_gap_reach){wall_distance(wall, options), before->spacing / 2},
+                             &gap, w->scratch);
 }
 
 /* Take from the outermost loops those stretches whose two sides come closer than 0.6 spacings to
  * each other: one wider bead will do there. */
 static iso_status part_loops(iso_walling *w, iso_region *loops, int32_t close, bool *parted) {
     iso_region kept = {0}, narrow = {0};
-    iso_offset_options grow = iso_offset_defaults(4 * SEAM);
+    iso_offset_options grow = iso_offset_defaults(SEAM);
     iso_status status = inset(&kept, loops, close, 50, w->scratch);
     if (status == ISO_OK)
         status = iso_gap_left(&w->left, loops, &kept, close, w->scratch);
     if (status == ISO_OK)
-        drop_small(&w->left, 2 * close);
+        gap_drop_small(&w->left, 2 * close);
     *parted = status == ISO_OK && w->left.count > 0;
     if (*parted) {
         status = iso_region_clean(&narrow, &w->left, ISO_FILL_POSITIVE, w->scratch);
@@ -177,7 +139,7 @@ static iso_status draw_thin(iso_walling *w, const iso_region *island, iso_region
     thin.like.role = ISO_ROLE_EXTERNAL_PERIMETER;
     thin.like.rank = options->external_first ? 0 : options->count - 1;
     ISO_TRY(iso_gap_left(&w->left, island, loops, bead->width / 2, w->scratch));
-    drop_small(&w->left, least);
+    gap_drop_small(&w->left, least);
     return iso_gap_fill(w->paths, &w->left, &thin, &w->scratch->arena);
 }
 
