@@ -421,7 +421,7 @@ static void test_hollow_box(void) {
     print p;
     print_blocks(&p, &box,
                  PLAIN "extrusion_width = 0.45\nfirst_layer_extrusion_width = 0.45\n"
-                       "top_infill_extrusion_width = 0.45\n");
+                       "top_infill_extrusion_width = 0.45\nthin_walls = 0\ngap_fill_enabled = 0\n");
     for (int32_t layer = 4; layer < 25; layer++)
         CHECK_NEAR(0, print_length(&p, ISO_ROLE_SOLID_INFILL, layer), 1e-9);
     CHECK_EQUAL(0, print_runs(&p, ISO_ROLE_INTERNAL_INFILL, -1));
