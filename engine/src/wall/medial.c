@@ -109,16 +109,21 @@ static iso_medial_point point_of_chord(const iso_triangulation *t, int32_t dart)
     return (iso_medial_point){p.x, p.y, (here + there) / 2};
 }
 
-/* The middle of a triangle's circle if it lies within, else of the triangle. */
-static iso_medial_point point_of_triangle(const iso_triangulation *t, int32_t triangle) {
+/* The middle of a triangle's circle if it lies within, else the widest of its chords' points. */
+static iso_medial_point point_of_triangle(const iso_axis *axis, const int32_t node[3],
+                                          const iso_triangulation *t, int32_t triangle) {
     int32_t d = 3 * triangle;
     iso_vec2 a = place(t, d), b = place(t, d + 1), c = place(t, d + 2);
     double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
     double area = bx * cy - by * cx, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
     double x = (cy * bb - by * cc) / (2 * area), y = (bx * cc - cx * bb) / (2 * area);
     double u = (x * cy - y * cx) / area, v = (bx * y - by * x) / area;
-    if (u < 0 || v < 0 || u + v > 1)
-        x = (bx + cx) / 3, y = (by + cy) / 3;
+    if (u < 0 || v < 0 || u + v > 1) {
+        int32_t widest = node[0];
+        for (int k = 1; k < 3; k++)
+            widest = axis->at[node[k]].half > axis->at[widest].half ? node[k] : widest;
+        return axis->at[widest];
+    }
     iso_vec2 p = {a.x + x, a.y + y};
     double half = 1e18;
     for (int32_t k = d; k < d + 3; k++) {
@@ -194,7 +199,7 @@ static iso_status build_axis(iso_axis *axis, const iso_triangulation *t, iso_are
         } else if (count > 0) {
             iso_vec2 tip = place(t, free_corner);
             int32_t middle = new_node(axis, count == 1 ? (iso_medial_point){tip.x, tip.y, 0}
-                                                       : point_of_triangle(t, k));
+                                                       : point_of_triangle(axis, node, t, k));
             for (int32_t i = 0; i < count; i++)
                 connect(axis, middle, node[i]);
         }
