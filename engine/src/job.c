@@ -68,7 +68,9 @@ static iso_status slice_objects(iso_job *job) {
     memset(job->next, 0, (size_t)count * sizeof *job->next);
     for (int32_t i = 0; i < count; i++) {
         iso_stack *stack = &job->stack[i];
-        ISO_TRY(stack_slice(stack, &job->plate.objects.object[i], job->options, &job->crew));
+        ISO_TRY(stack_slice(stack, &job->plate.objects.object[i], job->options,
+                            job->plate.modifiers.count > 0 ? &job->plate.modifiers : NULL,
+                            &job->crew));
         double height = stack->levels.top[stack->levels.count - 1];
         if (stack->levels.count > report->layer_count)
             report->layer_count = stack->levels.count;
@@ -283,6 +285,21 @@ static iso_status warn_of_empty_layers(const iso_job *job) {
                            job->empty, job->steps, job->lowest_empty);
 }
 
+static iso_status warn_of_unused_modifiers(const iso_job *job) {
+    for (int32_t i = 0; i < job->plate.modifiers.count; i++) {
+        const iso_modifier *modifier = &job->plate.modifiers.modifier[i];
+        bool used = false;
+        for (int32_t k = 0; k < job->crew.count; k++)
+            used = used || (job->crew.hand[k].modified.used && job->crew.hand[k].modified.used[i]);
+        if (!used)
+            ISO_TRY(iso_report_warn(job->report, "modifier-unused",
+                                    "modifiers, line %d: %s changes nothing: no sparse infill of "
+                                    "the print is within it, or later modifiers have all of it",
+                                    modifier->line, modifier->path));
+    }
+    return ISO_OK;
+}
+
 static iso_status print_steps(iso_job *job) {
     int64_t states = (int64_t)job->plate.instances.count + 1;
     ISO_TRY(ISO_ALLOCATE(job->state, states));
@@ -290,6 +307,7 @@ static iso_status print_steps(iso_job *job) {
     job->order = settings_of_order(job->options);
     ISO_TRY(job->options->complete_objects ? print_one_by_one(job) : print_together(job));
     progress(job, 1, "done");
+    ISO_TRY(warn_of_unused_modifiers(job));
     return warn_of_empty_layers(job);
 }
 

@@ -27,6 +27,7 @@ void hand_free(iso_hand *hand) {
     iso_region_free(&hand->inside);
     iso_region_free(&hand->part);
     iso_paths_free(&hand->paths);
+    modified_free(&hand->modified);
 }
 
 iso_status layer_new(iso_layer *layer, int32_t levels) {
@@ -227,6 +228,22 @@ static iso_status fill_bridges(const iso_filling *f) {
     return ISO_OK;
 }
 
+/* The sparse part, each piece with the fill of the modifier it lies in. */
+static iso_status fill_modified(const iso_filling *f) {
+    const iso_layer *layer = f->layer;
+    const iso_layer_settings *s = &layer->settings;
+    iso_modified *modified = &f->hand->modified;
+    int32_t overlap = (int32_t)(s->solid.spacing / 2) - s->fill_inset;
+    ISO_TRY(modifiers_split(modified, layer->modifiers, &layer->shell.sparse, layer->index,
+                            overlap > 0 ? overlap : 0, f->hand->planar));
+    for (int32_t k = 0; k <= layer->modifiers->count; k++) {
+        iso_fill_options fill;
+        if (modifiers_fill(&fill, layer->modifiers, k, layer->index))
+            ISO_TRY(fill_region(f, modified_piece(modified, k), &fill));
+    }
+    return ISO_OK;
+}
+
 static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) {
     const iso_layer_settings *s = &layer->settings;
     const iso_shell *shell = &layer->shell;
@@ -239,7 +256,9 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
     ISO_TRY(fill_region(&filling, &shell->lid, &s->lid));
     ISO_TRY(fill_region(&filling, &shell->top, &s->top));
     ISO_TRY(fill_region(&filling, &shell->solid, &s->solid));
-    if (s->has_sparse)
+    if (layer->modifiers)
+        ISO_TRY(fill_modified(&filling));
+    else if (s->has_sparse)
         ISO_TRY(fill_region(&filling, layer->combined ? &layer->alone : &shell->sparse,
                             &s->sparse));
     if (layer->combined)
@@ -269,9 +288,12 @@ iso_status layer_split(iso_layer *layer, iso_hand *hand, const iso_shell_neighbo
 static iso_status lie_on(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) {
     const iso_layer_settings *s = &layer->settings;
     iso_shell *shell = &layer->shell;
+    const iso_region *open = &beneath->shell.sparse;
+    if (s->lid_least > 0 && layer->modifiers)
+        ISO_TRY(modifiers_open(&open, &hand->modified, layer->modifiers, open, beneath->index,
+                               hand->planar));
     if (s->lid_least > 0)
-        ISO_TRY(iso_shell_find_lids(shell, &beneath->shell.sparse, s->lid_least,
-                                    s->lid_anchor, hand->planar));
+        ISO_TRY(iso_shell_find_lids(shell, open, s->lid_least, s->lid_anchor, hand->planar));
     ISO_TRY(check(&shell->lid, hand));
     ISO_TRY(check(&shell->solid, hand));
     if (s->overhang.reach > 0)
@@ -287,7 +309,7 @@ iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath
     if (beneath)
         ISO_TRY(lie_on(layer, hand, beneath));
     bool shelled = shell->top.count + shell->solid.count + shell->bridge.count + shell->lid.count +
-                   layer->combined;
+                   layer->combined || layer->modifiers;
     double ready = iso_stage_clock();
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
     iso_filling all = {.layer = layer, .hand = hand};

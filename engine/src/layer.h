@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "config/settings.h"
+#include "modifier.h"
 
 typedef enum iso_stage {
     ISO_STAGE_READ,
@@ -29,6 +30,8 @@ double iso_stage_clock(void); /* seconds, from some fixed time on */
 
 typedef struct iso_layer {
     iso_layer_settings settings;
+    int32_t index;                  /* counts from 0 */
+    const iso_modifiers *modifiers; /* or NULL */
     iso_region region; /* the outline */
     iso_region *run;   /* [levels] what it shares with the layers above, coarsely (shell.h) */
     int32_t levels;
@@ -49,6 +52,7 @@ typedef struct iso_hand {
     iso_arena arena;
     iso_region raw, island, inside, part;
     iso_paths paths;
+    iso_modified modified;
 } iso_hand;
 
 iso_status hand_new(iso_hand *hand) ISO_MUST_CHECK;

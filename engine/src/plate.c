@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "config/settings_objects.h"
+#include "object/transform.h"
 
 bool plate_on_bed(const iso_points *bed, double x, double y) {
     bool inside = false;
@@ -35,23 +36,48 @@ static const char *name_of(const char *path) {
     return slash ? slash + 1 : path;
 }
 
+/* Modifiers are drawn around the models, so that whatever moves those moves them. They are the last
+ * of the meshes; the first `count` are gone afterwards. */
+static iso_status make_with_modifiers(iso_plate *plate, iso_mesh *mesh, const char *const *name,
+                                      int32_t count, const iso_object_options *object) {
+    iso_object_options rest = *object;
+    rest.transform = (iso_transform){0};
+    ISO_TRY(
+        meshes_transform_along(mesh, count + plate->modifiers.count, count, &object->transform));
+    iso_vec3 from = mesh[0].min;
+    ISO_TRY(iso_objects_make(&plate->objects, mesh, name, count, &rest));
+    iso_vec3 to = plate->objects.object[0].mesh[0].min;
+    for (int32_t i = 0; i < plate->modifiers.count; i++) {
+        iso_mesh *moved = &plate->modifiers.modifier[i].mesh;
+        *moved = mesh[count + i];
+        mesh[count + i] = (iso_mesh){0};
+        iso_mesh_translate(moved, (iso_vec3){to.x - from.x, to.y - from.y, to.z - from.z});
+    }
+    return ISO_OK;
+}
+
 static iso_status make_objects(iso_plate *plate, iso_report *report, const iso_options *options,
                                const char *const *input, int32_t count) {
     iso_object_options object = settings_of_objects(options);
+    int32_t modifiers = plate->modifiers.count, all = count + modifiers;
     iso_mesh *mesh;
     const char **name;
-    ISO_TRY(ISO_ALLOCATE(mesh, count));
-    memset(mesh, 0, (size_t)count * sizeof *mesh);
+    ISO_TRY(ISO_ALLOCATE(mesh, all));
+    memset(mesh, 0, (size_t)all * sizeof *mesh);
     iso_status status = ISO_ALLOCATE(name, count);
     if (status == ISO_OK) {
         for (int32_t i = 0; i < count; i++)
             name[i] = name_of(input[i]);
         status = read_models(mesh, report, input, count);
         if (status == ISO_OK)
+            status = modifiers_load(mesh + count, &plate->modifiers, report);
+        if (status == ISO_OK && modifiers > 0)
+            status = make_with_modifiers(plate, mesh, name, count, &object);
+        else if (status == ISO_OK)
             status = iso_objects_make(&plate->objects, mesh, name, count, &object);
         iso_release(name);
     }
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < all; i++)
         iso_mesh_free(&mesh[i]);
     iso_release(mesh);
     return status;
@@ -163,6 +189,7 @@ static iso_status make_labels(iso_plate *plate) {
 
 iso_status plate_load(iso_plate *plate, iso_report *report, const iso_options *options,
                       const char *const *input, int32_t input_count) {
+    ISO_TRY(modifiers_parse(&plate->modifiers, options, input_count));
     ISO_TRY(make_objects(plate, report, options, input, input_count));
     ISO_TRY(place(plate, options));
     ISO_TRY(check_volume(plate, options));
@@ -182,4 +209,5 @@ void plate_free(iso_plate *plate) {
     iso_release(plate->outline);
     iso_instances_free(&plate->instances);
     iso_objects_free(&plate->objects);
+    modifiers_free(&plate->modifiers);
 }

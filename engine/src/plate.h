@@ -7,11 +7,14 @@
 #include <isoslice/object.h>
 #include <isoslice/report.h>
 
+#include "modifier.h"
+
 typedef struct iso_plate {
     iso_objects objects;
     iso_instances instances; /* in printing order */
     iso_gcode_object *label; /* [instances.count] if the G-code is to have them */
     iso_vec2 *outline;       /* theirs */
+    iso_modifiers modifiers; /* if any, there is one object; in its frame */
 } iso_plate;
 
 /* Read the files, note them in the report, and find the place of every copy. ISO_OUTSIDE: beyond

@@ -98,14 +98,17 @@ static iso_status verify_volume(iso_stack *stack, const iso_object *object) {
 }
 
 iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *options,
-                       const iso_crew *crew) {
-    iso_shell_depth shells = settings_of_shells(options);
-    stack->options = options;
+                       iso_modifiers *modifiers, const iso_crew *crew) {
+    stack->options = modifiers ? modifiers_shell_options(modifiers) : options;
+    stack->modifiers = modifiers;
+    iso_shell_depth shells = settings_of_shells(stack->options);
     stack->crew = crew;
     stack->block = LAYERS_PER_THREAD * crew->count;
     ISO_TRY(make_levels(stack, object));
     ISO_TRY(slice_meshes(stack, object));
     ISO_TRY(verify_volume(stack, object));
+    if (modifiers)
+        ISO_TRY(modifiers_slice(modifiers, &stack->levels));
     if (combine_is_asked_for(options)) {
         ISO_TRY(ISO_ALLOCATE(stack->combination, stack->levels.count));
         combine_plan(stack->combination, &stack->levels, options);
@@ -138,6 +141,8 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
         layer->settings.together.z =
             iso_units((stack->levels.cut[of->first] + stack->levels.cut[of->last]) / 2);
     }
+    layer->index = index;
+    layer->modifiers = stack->modifiers;
     if (stack->options->ironing_type == ISO_IRONING_TOPMOST && index + 1 < stack->levels.count)
         layer->settings.irons = 0;
     return layer_outline(layer, &stack->crew->hand[worker], stack->slices, stack->model_count,

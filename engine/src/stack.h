@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "combine.h"
+#include "modifier.h"
 #include "window.h"
 
 /* The threads, and what each of them needs for itself. */
@@ -24,6 +25,7 @@ void crew_free(iso_crew *crew);
 /* Zero-initialise. */
 typedef struct iso_stack {
     const iso_options *options;
+    const iso_modifiers *modifiers; /* or NULL */
     const iso_crew *crew;
     int32_t model_count;
     iso_slices *slices; /* [model_count] */
@@ -40,10 +42,10 @@ typedef struct iso_stack {
     int64_t mesh_bytes, slice_bytes;
 } iso_stack;
 
-/* Slice the object's meshes and let each go. ISO_OUTSIDE: too low for a layer; ISO_NOT_VERIFIED:
- * the slices don't hold the meshes' volume. */
+/* Slice the object's meshes, and the modifiers in it, or NULL, and let each go. ISO_OUTSIDE: too
+ * low for a layer; ISO_NOT_VERIFIED: the slices don't hold the meshes' volume. */
 iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *options,
-                       const iso_crew *crew) ISO_MUST_CHECK;
+                       iso_modifiers *modifiers, const iso_crew *crew) ISO_MUST_CHECK;
 void stack_free(iso_stack *stack);
 
 /* Layer `index` with its paths, made together with those of its block. Ask for one after the other:

@@ -58,6 +58,9 @@ ISO_API void iso_report_free(iso_report *report);
 /* Note a model: its path, size, volume, defects; warns of what was mended ("mesh-mended"). */
 ISO_API iso_status iso_report_add_input(iso_report *report, const char *path,
                                         const iso_mesh *mesh) ISO_MUST_CHECK;
+/* Warn of what was mended in a file, if anything was. */
+ISO_API iso_status iso_report_warn_mended(iso_report *report, const char *path,
+                                          const iso_mesh_defects *found) ISO_MUST_CHECK;
 /* Note a stage, or add to it if one of that name is there. */
 ISO_API iso_status iso_report_add_stage(iso_report *report, const char *name, double seconds,
                                         int64_t bytes) ISO_MUST_CHECK;

@@ -169,6 +169,9 @@ ISO_OPTION(
     fill_pattern, PATTERN, "rectilinear", "", 0, 0, "Infill",
     "Pattern of the sparse infill (docs/patterns.md). Patterns that can't fill solid give way "
     "to rectilinear at 100%.")
+ISO_OPTION(
+    modifiers, TEXT, "", "", 0, 0, "Infill",
+    "Models in which the infill is another, one a line or split by ; as core.stl fill_density=60% fill_angle=0 (docs/patterns.md).")
 ISO_OPTION(top_fill_pattern, PATTERN, "monotonic", "", 0, 0, "Infill",
            "Pattern of top surfaces: rectilinear, monotonic, monotoniclines, alignedrectilinear, "
            "concentric, hilbertcurve, archimedeanchords or octagramspiral.")

@@ -49,7 +49,7 @@ iso_status iso_report_warn(iso_report *report, const char *code, const char *for
 }
 
 /* "5 duplicate and 2 degenerate triangles dropped", of the counts that aren't zero */
-static iso_status warn_of_mending(iso_report *report, const char *path,
+iso_status iso_report_warn_mended(iso_report *report, const char *path,
                                   const iso_mesh_defects *found) {
     const struct {
         int64_t count;
@@ -85,7 +85,7 @@ iso_status iso_report_add_input(iso_report *report, const char *path, const iso_
                         (int64_t)mesh->vertex_count * (int64_t)sizeof(iso_vec3);
     input->defects = mesh->defects;
     report->input_count++;
-    return warn_of_mending(report, path, &mesh->defects);
+    return iso_report_warn_mended(report, path, &mesh->defects);
 }
 
 iso_status iso_report_add_stage(iso_report *report, const char *name, double seconds,

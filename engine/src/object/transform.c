@@ -4,6 +4,7 @@
 
 #include "base/angle.h"
 #include "mesh/builder.h"
+#include "object/transform.h"
 
 /* A linear map about a point that stays where it is. */
 typedef struct map {
@@ -138,16 +139,21 @@ static map map_of(const iso_transform *t, const extent *e) {
 }
 
 iso_status iso_meshes_transform(iso_mesh *mesh, int32_t count, const iso_transform *transform) {
+    return meshes_transform_along(mesh, count, count, transform);
+}
+
+iso_status meshes_transform_along(iso_mesh *mesh, int32_t count, int32_t leading,
+                                  const iso_transform *transform) {
     ISO_TRY(check_transform(transform));
-    extent e = extent_of(mesh, count);
+    extent e = extent_of(mesh, leading);
     if (does_nothing(transform) || e.min.x > e.max.x)
         return ISO_OK;
     map m = map_of(transform, &e);
-    extent reached = mapped_extent(mesh, count, &m);
     if (transform->fit.x > 0 || transform->fit.y > 0 || transform->fit.z > 0) {
-        scale(&m, fitting_factor(&reached, transform->fit));
-        reached = mapped_extent(mesh, count, &m);
+        extent whole = mapped_extent(mesh, leading, &m);
+        scale(&m, fitting_factor(&whole, transform->fit));
     }
+    extent reached = mapped_extent(mesh, count, &m);
     const double far = ISO_MESH_COORDINATE_MAX;
     if (!(reached.min.x >= -far && reached.min.y >= -far && reached.min.z >= -far &&
           reached.max.x <= far && reached.max.y <= far && reached.max.z <= far))
