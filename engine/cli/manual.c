@@ -94,8 +94,10 @@ static void print_help(const iso_arguments *arguments) {
     printf("\n%s%s\n\n", verb_help[arguments->verb], all ? " Each verb has its own --help." : "");
     print_flags(arguments->verb);
     if (arguments->verb == ISO_VERB_SLICE || arguments->verb == ISO_VERB_CONTOURS)
-        printf("\nEvery option of a print is a flag too, as --layer-height 0.2 or --no-cooling:\n"
-               "--list-options has them all. They have PrusaSlicer's names and meaning.\n");
+        printf(
+            "\nEvery option of a print is a flag too, as --layer-height 0.2; those that are 0 or 1 are\n"
+            "switches, as --ironing and --no-cooling. --list-options has them all. They have\n"
+            "PrusaSlicer's names and meaning.\n");
 }
 
 /* ---- options ---- */
@@ -117,7 +119,8 @@ static void format_range(char *text, size_t size, int32_t option) {
 }
 
 static const char *unit_of(char text[32], const iso_option_info *info) {
-    snprintf(text, 32, "%s%s", info->unit, info->kind == ISO_VALUE_RELATIVE ? " or %" : "");
+    bool share = info->kind == ISO_VALUE_RELATIVE;
+    snprintf(text, 32, "%s%s%s", info->unit, share && *info->unit ? " " : "", share ? "or %" : "");
     return text;
 }
 
@@ -142,7 +145,9 @@ static void list_options_markdown(void) {
     const char *category = "";
     printf("# Options\n\n"
            "Every option is a key of configuration files (`layer_height = 0.2`) and a flag\n"
-           "(`--layer-height 0.2`; `--cooling`, `--no-cooling`). Names, units and meaning are\n"
+           "(`--layer-height 0.2`). Those that are 0 or 1 are switches: `--ironing` is\n"
+           "`ironing = 1`, `--no-ironing` is `ironing = 0`. Where a unit is given as \"or %%\",\n"
+           "`50%%` is a share of what the meaning names. Names, units and meaning are\n"
            "PrusaSlicer's wherever it has the key. This page is printed by\n"
            "`isoslice --list-options=markdown`.\n");
     for (int32_t i = 0; i < iso_option_count(); i++) {
@@ -203,9 +208,10 @@ static void man_flags(void) {
 static void man_options(void) {
     const char *category = "";
     printf(".SH OPTIONS OF A PRINT\n");
-    print_roff("Each is a flag (--layer-height 0.2), a key of configuration files (layer_height = "
-               "0.2) and of -s (-s layer_height=0.2). Switches are turned on by --cooling and off "
-               "by --no-cooling.");
+    print_roff(
+        "Each is a flag (--layer-height 0.2), a key of configuration files (layer_height = "
+        "0.2) and of -s (-s layer_height=0.2). Those that are 0 or 1 are switches: --ironing "
+        "is ironing = 1, --no-ironing is ironing = 0.");
     for (int32_t i = 0; i < iso_option_count(); i++) {
         const iso_option_info *info = iso_option_at(i);
         char range[RANGE_SIZE], unit[32], name[64];
@@ -255,7 +261,7 @@ static void print_man(void) {
     printf(".SH EXAMPLES\n.nf\n");
     print_roff("isoslice part.stl");
     print_roff("isoslice -c printer.ini --layer-height 0.2 part.stl -o part.gcode");
-    print_roff("isoslice part.stl -o - | isoprint -");
+    print_roff("isoslice --arrange --duplicate 3 part.stl lid.stl");
     print_roff("isoslice preview part.gcode --layers 1,20,-1 -o part.svg");
     printf(".fi\n");
 }

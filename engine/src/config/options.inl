@@ -81,9 +81,10 @@ ISO_WORD(MIRROR, ISO_MIRROR_Z, "z")
 
 ISO_OPTION(inches, BOOL, "0", "", 0, 1, "Objects", "The model's numbers are inches, not mm.")
 ISO_OPTION(scale, RELATIVE, "1", "", 0.0001, 100000, "Objects",
-           "Factor on the size of the model, or percent.")
-ISO_OPTION(scale_to_fit, NUMBERS, "", "mm", 0.001, 10000, "Objects",
-           "Make the model as large as fits into this box, given as X,Y,Z.")
+           "Factor on the size of the model, or percent of it.")
+ISO_OPTION(
+    scale_to_fit, NUMBERS, "", "mm", 0.001, 10000, "Objects",
+    "Make the model as large as fits into this box, given as X,Y,Z. Empty: as large as it is.")
 ISO_OPTION(rotate, NUMBER, "0", "deg", -360, 360, "Objects", "Turn the model about the Z axis.")
 ISO_OPTION(rotate_x, NUMBER, "0", "deg", -360, 360, "Objects",
            "Turn the model about the X axis, before rotate.")
@@ -93,12 +94,15 @@ ISO_OPTION(mirror, MIRROR, "none", "", 0, 0, "Objects", "Mirror the model along 
 ISO_OPTION(cut, NUMBER, "0", "mm", 0, 10000, "Objects",
            "Cut the model at this height above its floor; 0 not at all.")
 ISO_OPTION(cut_keep, CUT, "both", "", 0, 0, "Objects", "Which part of a cut model is printed.")
-ISO_OPTION(ensure_on_bed, BOOL, "1", "", 0, 1, "Objects", "Set every object down on the bed.")
+ISO_OPTION(
+    ensure_on_bed, BOOL, "1", "", 0, 1, "Objects",
+    "Set every object down on the bed. Else z stays as the file has it, and what is below the bed isn't printed.")
 ISO_OPTION(split, BOOL, "0", "", 0, 1, "Objects",
            "Make every separate piece of a model an object of its own.")
 ISO_OPTION(duplicate, INTEGER, "1", "", 1, 10000, "Objects",
            "Print so many copies of every object, arranged on the bed.")
-ISO_OPTION(duplicate_grid, NUMBERS, "", "", 1, 1000, "Objects", "Print copies in a grid of X,Y.")
+ISO_OPTION(duplicate_grid, NUMBERS, "", "", 1, 1000, "Objects",
+           "Print copies of every object in rows and columns, given as X,Y. Empty: none.")
 ISO_OPTION(duplicate_distance, NUMBER, "6", "mm", 0, 1000, "Objects",
            "Distance between arranged objects.")
 ISO_OPTION(
@@ -109,10 +113,12 @@ ISO_OPTION(dont_arrange, BOOL, "0", "", 0, 1, "Objects",
            "arranging them. Copies are arranged all the same.")
 ISO_OPTION(complete_objects, BOOL, "0", "", 0, 1, "Objects",
            "Print one object after the other instead of all layer by layer.")
-ISO_OPTION(extruder_clearance_radius, NUMBER, "20", "mm", 0.1, 1000, "Objects",
-           "Radius around the nozzle in which the print head would hit what is printed.")
-ISO_OPTION(extruder_clearance_height, NUMBER, "20", "mm", 0.1, 1000, "Objects",
-           "Height above the nozzle at which the axes would hit what is printed.")
+ISO_OPTION(
+    extruder_clearance_radius, NUMBER, "20", "mm", 0.1, 1000, "Objects",
+    "For complete_objects: radius around the nozzle in which the print head would hit what is printed.")
+ISO_OPTION(
+    extruder_clearance_height, NUMBER, "20", "mm", 0.1, 1000, "Objects",
+    "For complete_objects: height above the nozzle at which the axes would hit what is printed.")
 
 ISO_OPTION(layer_height, NUMBER, "0.3", "mm", 0.01, 5, "Layers", "Height of a layer.")
 ISO_OPTION(first_layer_height, RELATIVE, "0.35", "mm", 0.01, 5, "Layers",
@@ -128,8 +134,9 @@ ISO_OPTION(cusp_height, NUMBER, "0.05", "mm", 0.001, 1, "Layers",
 ISO_OPTION(min_layer_height, NUMBER, "0.07", "mm", 0.01, 5, "Layers", "Thinnest adaptive layer.")
 ISO_OPTION(max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
            "Thickest adaptive layer; 0 takes 75% of nozzle_diameter.")
-ISO_OPTION(gcode_resolution, NUMBER, "0.0125", "mm", 0, 1, "Layers",
-           "How far a printed path may lie from the exact one, to leave out needless points.")
+ISO_OPTION(
+    gcode_resolution, NUMBER, "0.0125", "mm", 0, 1, "Layers",
+    "How far a printed path may lie from the exact one, to leave out needless points; 0 keeps all.")
 ISO_OPTION(z_offset, NUMBER, "0", "mm", -5, 5, "Layers",
            "Added to every Z of the output, against an end stop that is off.")
 ISO_OPTION(xy_size_compensation, NUMBER, "0", "mm", -10, 10, "Layers",
@@ -137,10 +144,12 @@ ISO_OPTION(xy_size_compensation, NUMBER, "0", "mm", -10, 10, "Layers",
 ISO_OPTION(
     xy_hole_compensation, NUMBER, "0", "mm", -10, 10, "Layers",
     "Every hole is widened by this, on top of xy_size_compensation; narrowed if it is negative.")
-ISO_OPTION(elefant_foot_compensation, NUMBER, "0", "mm", 0, 10, "Layers",
-           "The first layer is shrunk by this, against its being squeezed wider on the bed.")
+ISO_OPTION(
+    elefant_foot_compensation, NUMBER, "0", "mm", 0, 10, "Layers",
+    "The outlines of the first layer are drawn in by this, against their being squeezed wider on the bed.")
 
-ISO_OPTION(perimeters, INTEGER, "3", "", 0, 1000, "Walls", "Number of walls on every layer.")
+ISO_OPTION(perimeters, INTEGER, "3", "", 0, 1000, "Walls",
+           "Number of walls on every layer; 0 for none.")
 ISO_OPTION(external_perimeters_first, BOOL, "0", "", 0, 1, "Walls",
            "Print the walls from the outermost in, instead of from the innermost out.")
 ISO_OPTION(thin_walls, BOOL, "1", "", 0, 1, "Walls",
@@ -152,19 +161,20 @@ ISO_OPTION(
     "Walls over air are printed as bridges: bridge_speed, bridge_flow_ratio, bridge_fan_speed.")
 ISO_OPTION(
     seam_position, SEAM, "aligned", "", 0, 0, "Walls",
-    "Where walls begin and end: in a line up the part, at the nearest corner, at the back of the bed, or anywhere.")
-ISO_OPTION(fuzzy_skin, FUZZY, "none", "", 0, 0, "Walls",
-           "Walls that are drawn with a random jitter, for a rough skin.")
+    "Where walls begin and end: anywhere, at a corner near the nozzle, in a line up the part, or at the back of the bed.")
+ISO_OPTION(
+    fuzzy_skin, FUZZY, "none", "", 0, 0, "Walls",
+    "Which outermost walls are drawn with a random jitter, for a rough skin: none, those around the part, or those of holes as well.")
 ISO_OPTION(fuzzy_skin_thickness, NUMBER, "0.3", "mm", 0, 10, "Walls",
-           "How far the jitter moves a point to either side.")
+           "How far the jitter of fuzzy_skin moves a point to either side.")
 ISO_OPTION(fuzzy_skin_point_dist, NUMBER, "0.8", "mm", 0.05, 10, "Walls",
-           "Mean distance between the points of the jitter.")
+           "Mean distance between the points of fuzzy_skin.")
 ISO_OPTION(
     spiral_vase, BOOL, "0", "", 0, 1, "Walls",
     "Print one wall that rises without a seam over the bottom layers: one wall, no infill, no top.")
 
 ISO_OPTION(fill_density, PERCENT, "20%", "%", 0, 100, "Infill",
-           "Density of the infill; 100% fills solid.")
+           "Density of the infill; 0% leaves the part hollow, 100% fills it solid.")
 ISO_OPTION(
     fill_pattern, PATTERN, "rectilinear", "", 0, 0, "Infill",
     "Pattern of the sparse infill (docs/patterns.md). Patterns that can't fill solid give way "
@@ -192,103 +202,112 @@ ISO_OPTION(
 ISO_OPTION(infill_every_layers, INTEGER, "1", "", 1, 1000, "Infill",
            "Sparse infill of so many layers is printed at once, as thick as the nozzle allows.")
 ISO_OPTION(infill_first, BOOL, "0", "", 0, 1, "Infill", "Print the infill before the walls.")
-ISO_OPTION(top_solid_layers, INTEGER, "3", "", 0, 100000, "Infill",
-           "Number of solid layers under every top surface.")
-ISO_OPTION(bottom_solid_layers, INTEGER, "3", "", 0, 100000, "Infill",
-           "Number of solid layers over every bottom surface.")
-ISO_OPTION(top_solid_min_thickness, NUMBER, "0", "mm", 0, 1000, "Infill",
+ISO_OPTION(top_solid_layers, INTEGER, "3", "", 0, 100000, "Solid layers, bridges, ironing",
+           "Number of solid layers under every top surface; 0 for none.")
+ISO_OPTION(bottom_solid_layers, INTEGER, "3", "", 0, 100000, "Solid layers, bridges, ironing",
+           "Number of solid layers over every bottom surface; 0 for none.")
+ISO_OPTION(top_solid_min_thickness, NUMBER, "0", "mm", 0, 1000, "Solid layers, bridges, ironing",
            "Least thickness under every top surface, whatever top_solid_layers says.")
-ISO_OPTION(bottom_solid_min_thickness, NUMBER, "0", "mm", 0, 1000, "Infill",
+ISO_OPTION(bottom_solid_min_thickness, NUMBER, "0", "mm", 0, 1000, "Solid layers, bridges, ironing",
            "Least thickness over every bottom surface, whatever bottom_solid_layers says.")
 ISO_OPTION(
-    ensure_vertical_shell_thickness, BOOL, "0", "", 0, 1, "Infill",
+    ensure_vertical_shell_thickness, BOOL, "0", "", 0, 1, "Solid layers, bridges, ironing",
     "Add solid infill near sloping surfaces, so that the shell is as thick there as elsewhere.")
-ISO_OPTION(solid_infill_every_layers, INTEGER, "0", "", 0, 100000, "Infill",
+ISO_OPTION(solid_infill_every_layers, INTEGER, "0", "", 0, 100000, "Solid layers, bridges, ironing",
            "Every so many layers the whole layer is solid; 0 never.")
-ISO_OPTION(solid_infill_below_area, NUMBER, "70", "mm2", 0, 1000000, "Infill",
-           "Areas of sparse infill smaller than this become solid.")
-ISO_OPTION(bridge_angle, NUMBER, "0", "deg", 0, 360, "Infill",
+ISO_OPTION(solid_infill_below_area, NUMBER, "70", "mm2", 0, 1000000,
+           "Solid layers, bridges, ironing",
+           "Areas of sparse infill smaller than this become solid; 0 none.")
+ISO_OPTION(bridge_angle, NUMBER, "0", "deg", 0, 360, "Solid layers, bridges, ironing",
            "Direction of all bridges; 0 finds the best for each; 180 is along the X axis.")
-ISO_OPTION(bridge_flow_ratio, NUMBER, "1", "", 0.1, 2, "Infill",
-           "Factor on the amount of bridges: less pulls them taut.")
-ISO_OPTION(thick_bridges, BOOL, "1", "", 0, 1, "Infill",
+ISO_OPTION(bridge_flow_ratio, NUMBER, "1", "", 0.1, 2, "Solid layers, bridges, ironing",
+           "Factor on the amount of material in bridges: less pulls them taut.")
+ISO_OPTION(thick_bridges, BOOL, "1", "", 0, 1, "Solid layers, bridges, ironing",
            "Bridges are round threads as thick as the nozzle, else as thick as the layer.")
-ISO_OPTION(ironing, BOOL, "0", "", 0, 1, "Infill",
+ISO_OPTION(ironing, BOOL, "0", "", 0, 1, "Solid layers, bridges, ironing",
            "Pass over top surfaces again with the hot nozzle to smooth them.")
-ISO_OPTION(ironing_type, IRONING, "top", "", 0, 0, "Infill",
+ISO_OPTION(ironing_type, IRONING, "top", "", 0, 0, "Solid layers, bridges, ironing",
            "What is ironed: all top surfaces, the topmost one only, or all solid layers.")
-ISO_OPTION(ironing_flowrate, PERCENT, "15%", "%", 0, 100, "Infill",
+ISO_OPTION(ironing_flowrate, PERCENT, "15%", "%", 0, 100, "Solid layers, bridges, ironing",
            "Amount of material while ironing; in % of a full layer.")
-ISO_OPTION(ironing_spacing, NUMBER, "0.1", "mm", 0.01, 10, "Infill",
+ISO_OPTION(ironing_spacing, NUMBER, "0.1", "mm", 0.01, 10, "Solid layers, bridges, ironing",
            "Distance between the lines of ironing.")
 
-ISO_OPTION(skirts, INTEGER, "1", "", 0, 100, "Skirt",
+ISO_OPTION(skirts, INTEGER, "1", "", 0, 100, "Skirt and brim",
            "Loops drawn around everything on the first layer; 0 for none.")
-ISO_OPTION(skirt_distance, NUMBER, "6", "mm", 0, 100, "Skirt", "From the skirt to the part.")
-ISO_OPTION(skirt_height, INTEGER, "1", "layers", 1, 100000, "Skirt",
-           "Layers on which the skirt is drawn.")
-ISO_OPTION(min_skirt_length, NUMBER, "0", "mm", 0, 100000, "Skirt",
-           "As many loops of skirt as take this length of filament on the first layer.")
-ISO_OPTION(draft_shield, SHIELD, "disabled", "", 0, 0, "Skirt",
-           "A skirt as a wall against draught: as high as skirt_height, or as the print.")
-ISO_OPTION(brim_width, NUMBER, "0", "mm", 0, 100, "Skirt",
+ISO_OPTION(skirt_distance, NUMBER, "6", "mm", 0, 100, "Skirt and brim",
+           "Distance of the skirt from the parts, or from their brim.")
+ISO_OPTION(skirt_height, INTEGER, "1", "layers", 1, 100000, "Skirt and brim",
+           "Number of layers on which the skirt is drawn.")
+ISO_OPTION(
+    min_skirt_length, NUMBER, "0", "mm", 0, 100000, "Skirt and brim",
+    "As many loops of skirt as take this length of filament on the first layer; 0 as many as skirts says.")
+ISO_OPTION(
+    draft_shield, SHIELD, "disabled", "", 0, 0, "Skirt and brim",
+    "A skirt as a wall against draught: none, as high as skirt_height, or as high as the print.")
+ISO_OPTION(brim_width, NUMBER, "0", "mm", 0, 100, "Skirt and brim",
            "Width of the brim on the first layer; 0 for none.")
-ISO_OPTION(brim_type, BRIM, "outer_only", "", 0, 0, "Skirt",
-           "On which side of the outlines the brim is.")
-ISO_OPTION(brim_separation, NUMBER, "0", "mm", 0, 10, "Skirt", "Gap between the brim and the part.")
+ISO_OPTION(brim_type, BRIM, "outer_only", "", 0, 0, "Skirt and brim",
+           "On which side of the outlines the brim is: nowhere, outside, in holes, or both.")
+ISO_OPTION(brim_separation, NUMBER, "0", "mm", 0, 10, "Skirt and brim",
+           "Gap between the brim and the part.")
 
-ISO_OPTION(perimeter_speed, NUMBER, "60", "mm/s", 0, 1000, "Speed",
-           "Speed of inner walls; 0, as for the other speeds of printing: as fast as an even flow "
-           "allows, by max_print_speed and max_volumetric_speed.")
-ISO_OPTION(external_perimeter_speed, RELATIVE, "50%", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(
+    perimeter_speed, NUMBER, "60", "mm/s", 0, 1000, "Speed and acceleration",
+    "Speed of inner walls; 0, as for the other speeds of printing, is as fast as an even flow allows, by max_print_speed and max_volumetric_speed.")
+ISO_OPTION(external_perimeter_speed, RELATIVE, "50%", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of the outer walls; in % of perimeter_speed.")
-ISO_OPTION(small_perimeter_speed, RELATIVE, "15", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(small_perimeter_speed, RELATIVE, "15", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of walls no longer around than a circle of radius 6.5 mm; in % of "
            "perimeter_speed.")
-ISO_OPTION(infill_speed, NUMBER, "80", "mm/s", 0, 1000, "Speed", "Speed of sparse infill.")
-ISO_OPTION(solid_infill_speed, RELATIVE, "20", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(infill_speed, NUMBER, "80", "mm/s", 0, 1000, "Speed and acceleration",
+           "Speed of sparse infill.")
+ISO_OPTION(solid_infill_speed, RELATIVE, "20", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of solid infill; in % of infill_speed.")
-ISO_OPTION(top_solid_infill_speed, RELATIVE, "15", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(top_solid_infill_speed, RELATIVE, "15", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of the topmost solid layers; in % of solid_infill_speed.")
-ISO_OPTION(gap_fill_speed, NUMBER, "20", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(gap_fill_speed, NUMBER, "20", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of gap fill; 0 leaves gaps unfilled.")
-ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(bridge_speed, NUMBER, "60", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of bridges, and of walls over air.")
-ISO_OPTION(first_layer_speed, RELATIVE, "30", "mm/s", 0.1, 1000, "Speed",
+ISO_OPTION(first_layer_speed, RELATIVE, "30", "mm/s", 0.1, 1000, "Speed and acceleration",
            "Speed of everything printed on the first layer; in % of the usual speed of each path.")
-ISO_OPTION(ironing_speed, NUMBER, "15", "mm/s", 0.1, 1000, "Speed", "Speed of ironing.")
-ISO_OPTION(max_print_speed, NUMBER, "80", "mm/s", 1, 1000, "Speed",
-           "Highest speed where one is given as 0, which is then chosen for an even flow.")
-ISO_OPTION(max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Speed",
-           "Most that the extruder can melt: faster beads are slowed down to it; 0 no limit.")
-ISO_OPTION(default_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration where none of the below says otherwise; 0 leaves all to the firmware, "
-           "whatever those below say.")
-ISO_OPTION(external_perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of outer walls; 0 as of walls.")
-ISO_OPTION(perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+ISO_OPTION(ironing_speed, NUMBER, "15", "mm/s", 0.1, 1000, "Speed and acceleration",
+           "Speed of ironing.")
+ISO_OPTION(max_print_speed, NUMBER, "80", "mm/s", 1, 1000, "Speed and acceleration",
+           "Highest speed of those that are given as 0, which are then chosen for an even flow.")
+ISO_OPTION(max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Speed and acceleration",
+           "Most that the extruder can melt: faster beads are slowed down to it; 0 for no limit.")
+ISO_OPTION(
+    default_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
+    "Acceleration of beads where none of those below says otherwise; 0 leaves it to the firmware, whatever those below say.")
+ISO_OPTION(external_perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000,
+           "Speed and acceleration", "Acceleration of outer walls; 0 takes perimeter_acceleration.")
+ISO_OPTION(perimeter_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
            "Acceleration of walls; 0 takes default_acceleration.")
-ISO_OPTION(infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
+ISO_OPTION(infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
            "Acceleration of infill; 0 takes default_acceleration.")
-ISO_OPTION(solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of solid infill; 0 as of infill.")
-ISO_OPTION(top_solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of top surfaces; 0 as of solid infill.")
-ISO_OPTION(bridge_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of bridges and of walls over air; 0 as of solid infill and walls.")
-ISO_OPTION(first_layer_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of everything on the first layer; 0 as above it.")
-ISO_OPTION(travel_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed",
-           "Acceleration of moves that don't print; 0 takes default_acceleration if the firmware "
-           "has one acceleration for all moves, and leaves it alone else.")
-ISO_OPTION(travel_speed, NUMBER, "130", "mm/s", 1, 1000, "Speed",
+ISO_OPTION(solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
+           "Acceleration of solid infill; 0 takes infill_acceleration.")
+ISO_OPTION(top_solid_infill_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
+           "Acceleration of top surfaces; 0 takes solid_infill_acceleration.")
+ISO_OPTION(
+    bridge_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
+    "Acceleration of bridges and of walls over air; 0 takes solid_infill_acceleration and perimeter_acceleration.")
+ISO_OPTION(
+    first_layer_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
+    "Acceleration of everything printed on the first layer; 0 takes those of the other layers.")
+ISO_OPTION(
+    travel_acceleration, NUMBER, "0", "mm/s2", 0, 100000, "Speed and acceleration",
+    "Acceleration of moves that don't print; 0 takes default_acceleration if the firmware has one acceleration for all moves, and else leaves it alone.")
+ISO_OPTION(travel_speed, NUMBER, "130", "mm/s", 1, 1000, "Speed and acceleration",
            "Speed of moves that don't print.")
-ISO_OPTION(travel_speed_z, NUMBER, "0", "mm/s", 0, 1000, "Speed",
+ISO_OPTION(travel_speed_z, NUMBER, "0", "mm/s", 0, 1000, "Speed and acceleration",
            "Speed of moves straight up or down; 0 takes travel_speed.")
 
-ISO_OPTION(extrusion_width, RELATIVE, "0", "mm", 0, 10, "Width",
-           "Width of a bead where no width below says otherwise; in % of the layer's height; 0 "
-           "takes 1.125 nozzle diameters (top infill: 1).")
+ISO_OPTION(
+    extrusion_width, RELATIVE, "0", "mm", 0, 10, "Width",
+    "Width of a bead where no width below says otherwise; in % of the layer's height; 0 takes 1.125 nozzle diameters (top infill: 1).")
 ISO_OPTION(first_layer_extrusion_width, RELATIVE, "200%", "mm", 0, 10, "Width",
            "Width of every bead on the first layer; in % of its height; 0 as on the other layers.")
 ISO_OPTION(perimeter_extrusion_width, RELATIVE, "0", "mm", 0, 10, "Width",
@@ -305,11 +324,11 @@ ISO_OPTION(top_infill_extrusion_width, RELATIVE, "0", "mm", 0, 10, "Width",
 ISO_OPTION(filament_diameter, NUMBER, "1.75", "mm", 0.5, 10, "Filament",
            "Diameter of the filament.")
 ISO_OPTION(filament_density, NUMBER, "0", "g/cm3", 0, 30, "Filament",
-           "Density of the filament, for the weight in footer and report; 0 unknown.")
+           "Density of the filament, for the weight in footer and report; 0 if it is unknown.")
 ISO_OPTION(filament_cost, NUMBER, "0", "per kg", 0, 1000000, "Filament",
-           "Price of the filament, for the footer; 0 unknown.")
+           "Price of a kilogram of the filament, for the footer; 0 if it is unknown.")
 ISO_OPTION(filament_max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Filament",
-           "As max_volumetric_speed, for this filament: the lower one holds.")
+           "As max_volumetric_speed, for this filament: the lower one holds; 0 for no limit.")
 ISO_OPTION(extrusion_multiplier, NUMBER, "1", "", 0.1, 10, "Filament",
            "Factor on the amount of every extrusion.")
 ISO_OPTION(temperature, INTEGER, "200", "C", 0, 600, "Filament",
@@ -321,52 +340,56 @@ ISO_OPTION(bed_temperature, INTEGER, "0", "C", 0, 300, "Filament",
 ISO_OPTION(first_layer_bed_temperature, INTEGER, "0", "C", 0, 300, "Filament",
            "Temperature of the bed on the first layer; 0 leaves it alone.")
 
-ISO_OPTION(retract_length, NUMBER, "2", "mm", 0, 100, "Retraction",
+ISO_OPTION(retract_length, NUMBER, "2", "mm", 0, 100, "Travel and retraction",
            "Length of filament drawn back before a travel move; 0 never retracts.")
-ISO_OPTION(retract_speed, NUMBER, "40", "mm/s", 0.1, 1000, "Retraction", "Speed of retraction.")
-ISO_OPTION(deretract_speed, NUMBER, "0", "mm/s", 0, 1000, "Retraction",
+ISO_OPTION(retract_speed, NUMBER, "40", "mm/s", 0.1, 1000, "Travel and retraction",
+           "Speed of retraction.")
+ISO_OPTION(deretract_speed, NUMBER, "0", "mm/s", 0, 1000, "Travel and retraction",
            "Speed of pushing the filament forth again; 0 takes retract_speed.")
-ISO_OPTION(retract_restart_extra, NUMBER, "0", "mm", -10, 10, "Retraction",
-           "Length pushed out on top of what was drawn back.")
-ISO_OPTION(retract_before_travel, NUMBER, "2", "mm", 0, 1000, "Retraction",
+ISO_OPTION(retract_restart_extra, NUMBER, "0", "mm", -10, 10, "Travel and retraction",
+           "Length pushed out on top of what was drawn back; negative for less.")
+ISO_OPTION(retract_before_travel, NUMBER, "2", "mm", 0, 1000, "Travel and retraction",
            "Shorter travel moves do without retraction.")
-ISO_OPTION(retract_lift, NUMBER, "0", "mm", 0, 100, "Retraction",
-           "How far the nozzle is lifted while it is retracted.")
-ISO_OPTION(retract_lift_above, NUMBER, "0", "mm", 0, 10000, "Retraction",
-           "Lift from this height on only.")
-ISO_OPTION(retract_lift_below, NUMBER, "0", "mm", 0, 10000, "Retraction",
-           "Lift up to this height only; 0 no limit.")
-ISO_OPTION(retract_layer_change, BOOL, "0", "", 0, 1, "Retraction",
+ISO_OPTION(retract_lift, NUMBER, "0", "mm", 0, 100, "Travel and retraction",
+           "How far the nozzle is lifted while it is retracted; 0 not at all.")
+ISO_OPTION(retract_lift_above, NUMBER, "0", "mm", 0, 10000, "Travel and retraction",
+           "The nozzle is lifted from this height on only.")
+ISO_OPTION(retract_lift_below, NUMBER, "0", "mm", 0, 10000, "Travel and retraction",
+           "The nozzle is lifted up to this height only; 0 for no limit.")
+ISO_OPTION(retract_layer_change, BOOL, "0", "", 0, 1, "Travel and retraction",
            "Draw the filament back whenever a layer is done.")
-ISO_OPTION(wipe, BOOL, "0", "", 0, 1, "Retraction",
+ISO_OPTION(wipe, BOOL, "0", "", 0, 1, "Travel and retraction",
            "Move back along the printed path while the filament is drawn back.")
-ISO_OPTION(retract_before_wipe, PERCENT, "0%", "%", 0, 100, "Retraction",
+ISO_OPTION(retract_before_wipe, PERCENT, "0%", "%", 0, 100, "Travel and retraction",
            "Share of retract_length that is drawn back before the wipe begins.")
-ISO_OPTION(only_retract_when_crossing_perimeters, BOOL, "1", "", 0, 1, "Retraction",
+ISO_OPTION(only_retract_when_crossing_perimeters, BOOL, "1", "", 0, 1, "Travel and retraction",
            "No retraction on travel moves inside the part, where nothing that drips is seen; they "
            "take a way around walls if that is quicker than a retraction.")
-ISO_OPTION(avoid_crossing_perimeters, BOOL, "0", "", 0, 1, "Retraction",
+ISO_OPTION(avoid_crossing_perimeters, BOOL, "0", "", 0, 1, "Travel and retraction",
            "Lead travel moves around walls instead of across them.")
-ISO_OPTION(avoid_crossing_perimeters_max_detour, RELATIVE, "0", "mm", 0, 10000, "Retraction",
-           "Longest detour around walls; in % of the straight way; 0 no limit.")
-ISO_OPTION(use_firmware_retraction, BOOL, "0", "", 0, 1, "Retraction",
-           "Leave retraction to the firmware (G10 and G11).")
+ISO_OPTION(avoid_crossing_perimeters_max_detour, RELATIVE, "0", "mm", 0, 10000,
+           "Travel and retraction",
+           "Longest detour around walls; in % of the straight way; 0 for no limit.")
+ISO_OPTION(use_firmware_retraction, BOOL, "0", "", 0, 1, "Travel and retraction",
+           "Leave retraction to the firmware, by G10 and G11.")
 
 ISO_OPTION(cooling, BOOL, "1", "", 0, 1, "Cooling",
            "Slow down and blow by the time a layer takes, with the options below.")
 ISO_OPTION(slowdown_below_layer_time, INTEGER, "5", "s", 0, 1000, "Cooling",
-           "A layer that takes less than this is slowed down until it takes as long.")
+           "A layer that takes less than this is slowed down until it takes as long; 0 never.")
 ISO_OPTION(min_print_speed, NUMBER, "10", "mm/s", 0.1, 1000, "Cooling",
-           "Slowing down stops at this speed.")
+           "Speed below which layers are not slowed down.")
 ISO_OPTION(fan_always_on, BOOL, "0", "", 0, 1, "Cooling",
            "Blow at min_fan_speed at least, however long a layer takes.")
-ISO_OPTION(fan_below_layer_time, INTEGER, "60", "s", 0, 1000, "Cooling",
-           "The fan turns on a layer that takes less than this; the less, the faster.")
-ISO_OPTION(min_fan_speed, INTEGER, "35", "%", 0, 100, "Cooling", "Slowest that the fan turns.")
+ISO_OPTION(
+    fan_below_layer_time, INTEGER, "60", "s", 0, 1000, "Cooling",
+    "The fan turns on a layer that takes less than this; the less, the faster. 0: on slowed layers alone.")
+ISO_OPTION(min_fan_speed, INTEGER, "35", "%", 0, 100, "Cooling",
+           "Slowest speed of the fan when it is on.")
 ISO_OPTION(max_fan_speed, INTEGER, "100", "%", 0, 100, "Cooling",
            "Speed of the fan on layers that are slowed down.")
 ISO_OPTION(disable_fan_first_layers, INTEGER, "3", "", 0, 1000, "Cooling",
-           "On that many layers the fan stays off.")
+           "Number of layers, the first ones, on which the fan stays off.")
 ISO_OPTION(full_fan_speed_layer, INTEGER, "0", "", 0, 1000, "Cooling",
            "From disable_fan_first_layers to this layer the fan speeds up evenly; 0 at once.")
 ISO_OPTION(bridge_fan_speed, INTEGER, "100", "%", 0, 100, "Cooling",
@@ -376,25 +399,25 @@ ISO_OPTION(nozzle_diameter, NUMBER, "0.4", "mm", 0.05, 5, "Printer", "Diameter o
 ISO_OPTION(bed_shape, POINTS, "0x0,200x0,200x200,0x200", "mm", -1600, 1600, "Printer",
            "Corners of the bed, one after the other around it.")
 ISO_OPTION(max_print_height, NUMBER, "200", "mm", 0.1, 10000, "Printer",
-           "Highest that the nozzle may go.")
+           "Greatest height that the nozzle may go to.")
 ISO_OPTION(center, PLACE, "", "mm", -1600, 1600, "Printer",
            "Where the middle of the print comes to lie, as X,Y. Empty: the middle of the bed.")
 ISO_OPTION(gcode_flavor, FLAVOUR, "marlin2", "", 0, 0, "Printer", "Dialect of the G-code.")
 ISO_OPTION(use_relative_e_distances, BOOL, "1", "", 0, 1, "Printer",
-           "Extrusion counts from the move before (M83), not from the start (M82).")
+           "Extrusion is counted from the move before (M83), not from the start (M82).")
 ISO_OPTION(use_volumetric_e, BOOL, "0", "", 0, 1, "Printer",
-           "E counts mm3 instead of mm of filament.")
+           "Extrusion is counted in mm3 instead of mm of filament.")
 ISO_OPTION(
     machine_limits_usage, LIMITS, "time_estimate_only", "", 0, 0, "Printer",
-    "What the limits below are for: told to the firmware at the start, for the estimate of time, or for nothing.")
+    "What the limits below are for: told to the firmware at the start and for the estimate of time, for the estimate alone, or for nothing.")
 ISO_OPTION(machine_max_acceleration_extruding, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
-           "The firmware's acceleration of printing moves, for the estimate of time.")
+           "The firmware's highest acceleration of moves that print.")
 ISO_OPTION(machine_max_acceleration_travel, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
-           "The firmware's acceleration of travel moves, for the estimate of time.")
+           "The firmware's highest acceleration of moves that don't print.")
 ISO_OPTION(machine_max_acceleration_retracting, NUMBER, "1000", "mm/s2", 1, 100000, "Printer",
-           "The firmware's acceleration of retractions, for the estimate of time.")
+           "The firmware's highest acceleration of retractions.")
 ISO_OPTION(machine_max_feedrate_z, NUMBER, "12", "mm/s", 0.1, 1000, "Printer",
-           "The firmware's highest speed of the Z axis, for the estimate of time.")
+           "The firmware's highest speed of the Z axis.")
 ISO_OPTION(machine_max_feedrate_x, NUMBER, "500", "mm/s", 0.1, 100000, "Printer",
            "The firmware's highest speed of the X axis.")
 ISO_OPTION(machine_max_feedrate_y, NUMBER, "500", "mm/s", 0.1, 100000, "Printer",
@@ -409,58 +432,64 @@ ISO_OPTION(machine_max_acceleration_z, NUMBER, "500", "mm/s2", 1, 1000000, "Prin
            "The firmware's highest acceleration of the Z axis.")
 ISO_OPTION(machine_max_acceleration_e, NUMBER, "10000", "mm/s2", 1, 1000000, "Printer",
            "The firmware's highest acceleration of the E axis.")
-ISO_OPTION(machine_max_jerk_x, NUMBER, "10", "mm/s", 0, 1000, "Printer",
-           "The firmware's jerk of the X axis.")
-ISO_OPTION(machine_max_jerk_y, NUMBER, "10", "mm/s", 0, 1000, "Printer",
-           "The firmware's jerk of the Y axis.")
-ISO_OPTION(machine_max_jerk_z, NUMBER, "0.2", "mm/s", 0, 1000, "Printer",
-           "The firmware's jerk of the Z axis.")
-ISO_OPTION(machine_max_jerk_e, NUMBER, "2.5", "mm/s", 0, 1000, "Printer",
-           "The firmware's jerk of the E axis.")
-ISO_OPTION(machine_max_junction_deviation, NUMBER, "0.013", "mm", 0.001, 1, "Printer",
-           "The firmware's junction deviation, for the estimate of time.")
+ISO_OPTION(
+    machine_max_jerk_x, NUMBER, "10", "mm/s", 0, 1000, "Printer",
+    "The firmware's jerk of the X axis. The estimate of time goes by it if gcode_flavor is marlin.")
+ISO_OPTION(
+    machine_max_jerk_y, NUMBER, "10", "mm/s", 0, 1000, "Printer",
+    "The firmware's jerk of the Y axis. The estimate of time goes by it if gcode_flavor is marlin.")
+ISO_OPTION(
+    machine_max_jerk_z, NUMBER, "0.2", "mm/s", 0, 1000, "Printer",
+    "The firmware's jerk of the Z axis. The estimate of time goes by it if gcode_flavor is marlin.")
+ISO_OPTION(
+    machine_max_jerk_e, NUMBER, "2.5", "mm/s", 0, 1000, "Printer",
+    "The firmware's jerk of the E axis. The estimate of time goes by it if gcode_flavor is marlin.")
+ISO_OPTION(
+    machine_max_junction_deviation, NUMBER, "0.013", "mm", 0.001, 1, "Printer",
+    "The firmware's junction deviation. The estimate of time goes by it unless gcode_flavor is marlin.")
 
-ISO_OPTION(start_gcode, TEXT,
-           "G28 ; home all axes\\n"
-           "G1 Z5 F1200 ; lift the nozzle",
-           "", 0, 0, "G-code",
-           "What comes before the print. [key] stands for an option's value. Heating comes by "
-           "itself if there is none in it.")
+ISO_OPTION(
+    start_gcode, TEXT,
+    "G28 ; home all axes\\n"
+    "G1 Z5 F1200 ; lift the nozzle",
+    "", 0, 0, "G-code",
+    "What comes before the print, with macros (docs/macros.md). If nothing in it heats, nozzle and bed are heated around it.")
 ISO_OPTION(end_gcode, TEXT,
            "M104 S0 ; nozzle off\\n"
            "M140 S0 ; bed off\\n"
            "M107 ; fan off\\n"
            "G28 X0 ; move out of the way\\n"
            "M84 ; motors off",
-           "", 0, 0, "G-code", "What comes after the print. [key] stands for an option's value.")
+           "", 0, 0, "G-code", "What comes after the print, with macros.")
 ISO_OPTION(
     layer_gcode, TEXT, "", "", 0, 0, "G-code",
-    "What comes at every layer, once the nozzle is at its height. [layer_num] counts from 0, "
-    "[layer_z] is the layer's top in mm; [key] stands for an option's value.")
+    "What comes at every layer, once the nozzle is at its height, with macros: [layer_num] counts from 0, [layer_z] is the layer's top in mm.")
 ISO_OPTION(before_layer_gcode, TEXT, "", "", 0, 0, "G-code",
-           "What comes before the nozzle rises to a layer; as layer_gcode.")
+           "What comes before the nozzle rises to a layer, with macros as in layer_gcode.")
 ISO_OPTION(start_filament_gcode, TEXT, "", "", 0, 0, "G-code",
-           "What comes after start_gcode, for the filament.")
+           "What comes after start_gcode, for the filament, with macros.")
 ISO_OPTION(end_filament_gcode, TEXT, "", "", 0, 0, "G-code",
-           "What comes before end_gcode, for the filament.")
+           "What comes before end_gcode, for the filament, with macros.")
 ISO_OPTION(between_objects_gcode, TEXT, "", "", 0, 0, "G-code",
-           "What comes between objects that are printed one by one.")
+           "What comes between objects that are printed one by one, with macros.")
 ISO_OPTION(colorprint_heights, NUMBERS, "", "mm", 0, 10000, "G-code",
-           "Heights at which the filament is changed by color_change_gcode.")
+           "Heights at which color_change_gcode changes the filament. Empty: none.")
 ISO_OPTION(
     events, TEXT, "", "", 0, 0, "G-code",
     "What happens at which heights, one a line or split by ; as 5.2:color, 8:pause, 10:template, or 12.4:any G-code.")
-ISO_OPTION(color_change_gcode, TEXT, "M600", "", 0, 0, "G-code", "What changes the filament.")
-ISO_OPTION(pause_print_gcode, TEXT, "M601", "", 0, 0, "G-code", "What pauses the print.")
+ISO_OPTION(color_change_gcode, TEXT, "M600", "", 0, 0, "G-code",
+           "What changes the filament, with macros.")
+ISO_OPTION(pause_print_gcode, TEXT, "M601", "", 0, 0, "G-code",
+           "What pauses the print, with macros.")
 ISO_OPTION(template_custom_gcode, TEXT, "", "", 0, 0, "G-code",
-           "What an event named template does.")
+           "What an event named template does, with macros.")
 ISO_OPTION(gcode_comments, BOOL, "0", "", 0, 1, "G-code", "Say behind every move what it is for.")
 ISO_OPTION(
     gcode_label_objects, LABELS, "disabled", "", 0, 0, "G-code",
-    "Mark which object is being printed: in comments for OctoPrint, or by commands of the firmware, which can then leave one out.")
+    "Mark which object is being printed: not at all, in comments for OctoPrint, or by commands of the firmware, which can then leave one out.")
 ISO_OPTION(arc_fitting, ARCS, "disabled", "", 0, 0, "G-code",
            "Draw round paths by arcs, G2 and G3, within gcode_resolution.")
 ISO_OPTION(remaining_times, BOOL, "1", "", 0, 1, "G-code",
-           "Tell the printer how much is done and how long it will take still (M73).")
+           "Tell the printer how much is done and how long it still takes (M73).")
 
 #endif
