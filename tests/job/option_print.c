@@ -215,14 +215,6 @@ static void top_solid_infill_speed(const change *c) {
     check_speed(c->b, ISO_ROLE_TOP_SOLID_INFILL, 0, 12); /* 60 % of 20 */
 }
 
-/* There are no gaps yet whose paths could change. */
-static void no_path_of_it(const change *c) {
-    same_places(c->a, c->b);
-    for (int32_t i = 0; i < c->a->move_count; i++)
-        CHECK(c->a->move[i].f == c->b->move[i].f);
-    CHECK_EQUAL(0, print_runs(c->b, ISO_ROLE_GAP_FILL, -1));
-}
-
 static void first_layer_speed(const change *c) {
     same_places(c->a, c->b);
     check_speed(c->a, -1, 1, 30);
@@ -369,7 +361,6 @@ const option_row option_rows_print[] = {
     {make_block, "solid_infill_speed", "50%", STEADY "top_solid_infill_speed = 15\n",
      solid_infill_speed},
     {make_block, "top_solid_infill_speed", "60%", STEADY, top_solid_infill_speed},
-    {make_block, "gap_fill_speed", "33", STEADY, no_path_of_it},
     {make_block, "first_layer_speed", "22", STEADY, first_layer_speed},
     {make_block, "first_layer_speed", "50%", STEADY, first_layer_speed_in_percent},
     {make_block, "travel_speed", "99", STEADY, travel_speed},

@@ -211,16 +211,20 @@ static void test_gap_between_walls(void) {
                                 .gap_least = 900};
     make_strip(&region, 20, 1.1);
     CHECK_OK(iso_walls(&paths, &inside, &region, &options, scratch));
+    int seen = 0;
     CHECK_EQUAL(2, paths.count);
     for (int32_t i = 0; i < paths.count; i++) {
         const iso_path *path = &paths.path[i];
         double gap = 1.1 - 0.45 - iso_mm(options.external.spacing);
         if (path->role != ISO_ROLE_GAP_FILL)
             continue;
+        seen++;
         CHECK(!path->closed && path->rank == 2);
+        CHECK_EQUAL(ISO_ROLE_GAP_FILL, paths.vertex[path->first].role);
         CHECK_NEAR(gap * HEIGHT * MM, paths.vertex[path->first].area, 0.02 * gap * HEIGHT * MM);
         CHECK_NEAR(0.55, iso_mm(paths.vertex[path->first].at.y), 0.002);
     }
+    CHECK_EQUAL(1, seen);
     iso_region_free(&region);
     iso_region_free(&inside);
     iso_paths_free(&paths);

@@ -78,7 +78,8 @@ static double mean_room(const iso_gapping *g, const iso_medial_point *point, int
 
 static iso_path_vertex vertex_of(const iso_gapping *g, const iso_medial_point *p, double room) {
     int32_t height = g->options->height;
-    iso_path_vertex v = {.at = {(int32_t)floor(p->x + 0.5), (int32_t)floor(p->y + 0.5)}};
+    iso_path_vertex v = {.at = {(int32_t)floor(p->x + 0.5), (int32_t)floor(p->y + 0.5)},
+                         .role = g->options->like.role};
     if (g->options->outline) {
         iso_bead bead = iso_bead_of((int32_t)(room + 0.5), height);
         v.width = bead.width;
