@@ -411,6 +411,30 @@ class Cli(unittest.TestCase):
         for code in re.findall(r'iso_report_warn\([^"]*?,\s*"([a-z-]+)"', text):
             self.assertIn(f"`{code}`", manual)
 
+    def test_keys_of_the_report_are_documented(self):
+        def keys(value):
+            if isinstance(value, dict):
+                return set(value).union(*map(keys, value.values()))
+            return set().union(*map(keys, value)) if isinstance(value, list) else set()
+
+        write_stl(self.at / "holed.stl", box((0, 0, 0), (20, 20, 20))[:-1])
+        report = json.loads(self.run_it("holed.stl", "--report", "-", "-o", "x.gcode").stdout)
+        manual = (DOCS / "command-line.md").read_text()
+        self.assertGreater(len(keys(report)), 40)
+        for key in keys(report):
+            self.assertIn(f"`{key}`", manual.replace("[]`", "`"))
+        for stage in report["stages"]:
+            self.assertIn(stage["name"], re.search(r"`stages.*", manual)[0])
+
+    def test_exit_codes_are_documented(self):
+        header = (SOURCE.parent / "include/isoslice/status.h").read_text()
+        manual, page = (DOCS / "command-line.md").read_text(), self.run_it("--man").stdout.decode()
+        codes = re.findall(r"^ +ISO_\w+ = (\d+)", header, re.M)
+        self.assertGreater(len(codes), 8)
+        for code in codes:
+            self.assertRegex(manual, rf"(?m)^\| {code} \|")
+            self.assertRegex(page, rf"(?m)^\.TP\n{code}$")
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=1)
