@@ -258,7 +258,8 @@ iso_status iso_gap_fill_left(iso_paths *paths, const iso_region *region, const i
                              iso_planar_scratch *scratch) {
     iso_region room[2] = {0};
     bool missed;
-    ISO_TRY(reach_misses(&missed, region, reached, reach->distance, &scratch->arena));
+    double shortest = options->shortest * options->least;
+    ISO_TRY(reach_misses(&missed, region, reached, reach->distance, shortest, &scratch->arena));
     if (!missed)
         return ISO_OK;
     iso_status status = fill_left(paths, room, region, reached, reach, options, scratch);

@@ -12,6 +12,7 @@ enum { REACH = 3, CELLS_MAX = 1 << 26, CORNER_CELLS = 5, RUN_CELLS = 4 };
 typedef struct iso_marks {
     iso_point origin;
     double cell;
+    int32_t run;         /* cells without a mark in a row that count */
     int32_t words, rows; /* 64 cells a word */
     uint64_t *mark;
 } iso_marks;
@@ -72,7 +73,7 @@ static bool walk(iso_marks *m, const iso_region *region, bool marking) {
                     mark_around(m, column, row);
                 else if (is_marked(m, column, row))
                     run = 0;
-                else if (++run >= RUN_CELLS)
+                else if (++run >= m->run)
                     return true;
             }
         }
@@ -81,12 +82,13 @@ static bool walk(iso_marks *m, const iso_region *region, bool marking) {
 }
 
 iso_status reach_misses(bool *missed, const iso_region *region, const iso_region *reached,
-                        int32_t radius, iso_arena *arena) {
+                        int32_t radius, double shortest, iso_arena *arena) {
     *missed = region->count > 0;
     if (region->count == 0 || reached->count == 0 || radius <= 0)
         return ISO_OK;
     iso_box box = box_of_region(region);
     iso_marks m = {.cell = 0.55 * radius};
+    m.run = RUN_CELLS + (int32_t)(shortest / m.cell < 1000 ? shortest / m.cell : 1000);
     int32_t margin = (int32_t)(m.cell * (REACH + 1)) + 1;
     m.origin = (iso_point){box.min.x - margin, box.min.y - margin};
     double columns = ((double)box.max.x - box.min.x + 2.0 * margin) / m.cell + 1;

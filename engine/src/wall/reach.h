@@ -13,6 +13,6 @@
  * count. Stretches no longer than a radius or two may go unseen. Time goes with the contours'
  * length in radii. */
 iso_status reach_misses(bool *missed, const iso_region *region, const iso_region *reached,
-                        int32_t radius, iso_arena *arena) ISO_MUST_CHECK;
+                        int32_t radius, double shortest, iso_arena *arena) ISO_MUST_CHECK;
 
 #endif

@@ -78,7 +78,7 @@ static iso_status shrink(iso_walling *w, iso_region *to, const iso_region *from,
     bool missed = false;
     ISO_TRY(inset(to, from, distance, w->options->arc_tolerance, w->scratch));
     if (iso_planar_get_counts(w->scratch).untouched == untouched || from->count != to->count)
-        ISO_TRY(reach_misses(&missed, from, to, distance, &w->scratch->arena));
+        ISO_TRY(reach_misses(&missed, from, to, distance, 0, &w->scratch->arena));
     *wide = !missed;
     return ISO_OK;
 }
