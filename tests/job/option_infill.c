@@ -199,6 +199,27 @@ static void infill_every_layers(const change *c) {
     }
 }
 
+/* The left half of the block is a modifier of its own. */
+static char half_line[256];
+
+static void make_half(shape *s) {
+    shape half = {0};
+    const char *path = print_path("half.stl");
+    make_block(s);
+    shape_box3 b = shape_bounds(s);
+    shape_box(&half, b.min[0], b.min[1], b.min[2], (b.min[0] + b.max[0]) / 2, b.max[1], b.max[2]);
+    CHECK(shape_write_binary(&half, path));
+    shape_free(&half);
+    snprintf(half_line, sizeof half_line, "%s fill_angle=0 fill_density=60%%", path);
+}
+
+static void modifiers(const change *c) {
+    CHECK(along(c->a, SPARSE, 4, 45) > 0.7 && along(c->a, SPARSE, 4, 0) < 0.3);
+    CHECK(along(c->b, SPARSE, 4, 45) > 0.15 && along(c->b, SPARSE, 4, 0) > 0.4);
+    double a = print_filament(c->a, SPARSE, 4), b = print_filament(c->b, SPARSE, 4);
+    CHECK_NEAR(1.5 * a, b, 0.15 * a); /* 30 % and 60 % against 30 % */
+}
+
 #define PLAIN "perimeters = 1\nfill_density = 30%\nsolid_infill_below_area = 0\n"
 #define ROW(word, check)                                                                           \
     { make_block, "fill_pattern", word, PLAIN, check }
@@ -228,6 +249,7 @@ const option_row option_rows_infill[] = {
      "infill_anchor_max = 3\ninfill_anchor = 0\n",
      infill_anchor},
     {make_block, "infill_anchor_max", "0", PLAIN "fill_pattern = grid\n", infill_anchor_max},
+    {make_half, "modifiers", half_line, PLAIN, modifiers},
     {make_block, "infill_every_layers", "3",
      PLAIN "layer_height = 0.2\nfirst_layer_height = 0.2\ntop_solid_layers = 0\n"
            "bottom_solid_layers = 0\n",
