@@ -102,7 +102,11 @@ static iso_status part_loops(iso_walling *w, iso_region *loops, int32_t close, b
     iso_region kept = {0}, narrow = {0};
     iso_offset_options grow = iso_offset_defaults(SEAM);
     iso_status status = inset(&kept, loops, close, 50, w->scratch);
+    bool missed = false;
+    iso_region_clear(&w->left);
     if (status == ISO_OK)
+        status = reach_misses(&missed, loops, &kept, close, 0, &w->scratch->arena);
+    if (status == ISO_OK && missed)
         status = iso_gap_left(&w->left, loops, &kept, close, w->scratch);
     if (status == ISO_OK)
         gap_drop_small(&w->left, 2 * close);
