@@ -67,7 +67,7 @@ typedef struct iso_walling {
     iso_planar_scratch *scratch;
     iso_region turn[2]; /* take turns as the walls' middles */
     iso_region left;
-    bool ahead; /* the second wall is drawn already, and nothing is narrow */
+    bool drawn, ahead; /* the second wall is drawn already; nothing is narrow there */
 } iso_walling;
 
 /* Shrink `from` by `distance`, and look whether it is wide everywhere: surely so if the operation
@@ -158,10 +158,12 @@ static iso_status draw_outermost(iso_walling *w, const iso_region *island) {
         return ISO_OK;
     if (wide && options->count > 1) {
         ISO_TRY(shrink(w, next, loops, wall_distance(1, options), &w->ahead));
+        w->drawn = true;
         if (w->ahead)
             return ISO_OK;
     }
     ISO_TRY(part_loops(w, loops, options->external.spacing * 3 / 10, &parted));
+    w->drawn = w->drawn && !parted;
     if (!parted && wide)
         return ISO_OK;
     return draw_thin(w, island, loops);
@@ -169,10 +171,9 @@ static iso_status draw_outermost(iso_walling *w, const iso_region *island) {
 
 static iso_status draw_inner(iso_walling *w, const iso_region *at, iso_region *next, int32_t wall) {
     const iso_wall_options *options = w->options;
-    bool wide;
-    if (wall == 1 && w->ahead)
-        return ISO_OK;
-    ISO_TRY(shrink(w, next, at, wall_distance(wall, options), &wide));
+    bool wide = w->ahead;
+    if (wall > 1 || !w->drawn)
+        ISO_TRY(shrink(w, next, at, wall_distance(wall, options), &wide));
     if (options->gap_least > 0 && !wide)
         ISO_TRY(fill_gaps(w, at, next, wall));
     return ISO_OK;
