@@ -531,6 +531,33 @@ static iso_region random_region(void) {
     return region;
 }
 
+/* Islands lie in holes of others: a small ring goes, what it was around stays, in the ring without.
+ */
+static void test_what_is_within_small_sparse_parts(void) {
+    iso_region outline = square(20), fill = square(20);
+    add_box(&fill, -18, -18, 18, 18, 1);
+    add_box(&fill, -12, -12, 12, 12, 0);
+    add_box(&fill, -11, -11, 11, 11, 1);
+    add_box(&fill, -6, -6, 6, 6, 0);
+    add_box(&fill, 7, 7, 9, 9, 0);
+    static const int32_t parent[] = {-1, 0, 1, 2, 3, 3};
+    memcpy(fill.parent, parent, sizeof parent);
+    CHECK_OK(iso_region_validate(&fill, scratch));
+    iso_shell_options options = {.narrowest = 4000, .sparse_least = (int64_t)2 * 100 * MM * MM};
+    iso_shell shell = {0};
+    CHECK_OK(iso_shell_split(&shell, &fill, &(iso_shell_neighbours){.own = &outline}, &options,
+                             scratch));
+    CHECK_OK(iso_region_validate(&shell.sparse, scratch));
+    CHECK_OK(iso_region_validate(&shell.solid, scratch));
+    CHECK_NEAR(1600 - 1296 + 144, area_of(&shell.sparse), 1e-6);
+    CHECK_NEAR(576 - 484 + 4, area_of(&shell.solid), 1e-6);
+    CHECK_EQUAL(3, shell.sparse.count);
+    CHECK_EQUAL(1, shell.sparse.parent[2]);
+    iso_shell_free(&shell);
+    iso_region_free(&outline);
+    iso_region_free(&fill);
+}
+
 static void test_random_outlines(void) {
     for (int trial = 0; trial < 24; trial++) {
         iso_region outline[7], fill = {0};
@@ -674,6 +701,7 @@ int main(void) {
     RUN(test_bridge_over_a_pit);
     RUN(test_lids);
     RUN(test_small_sparse_parts_are_solid);
+    RUN(test_what_is_within_small_sparse_parts);
     RUN(test_random_outlines);
     RUN(test_levels);
     RUN(test_widening);

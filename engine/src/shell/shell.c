@@ -220,18 +220,24 @@ static iso_status fill_small(iso_shell *shell, const iso_shell_options *options,
     if (small == 0)
         return ISO_OK;
     iso_region *raw = &shell->rest;
+    const iso_region *from = &shell->spare;
+    int32_t *place; /* in the new sparse part: of a contour, or of the one around it that stays */
     ISO_TRY(copy_region(raw, solid));
     ISO_TRY(copy_region(&shell->spare, sparse));
+    ISO_TRY(ISO_PUSH(place, &scratch->arena, from->count));
     iso_region_clear(sparse);
     for (int32_t i = 0; i < islands.count; i++)
-        for (int32_t k = islands.first[i], base = sparse->count; k < islands.first[i + 1]; k++) {
-            const iso_region *from = &shell->spare;
+        for (int32_t k = islands.first[i]; k < islands.first[i + 1]; k++) {
             int32_t c = islands.contour[k];
+            int32_t around = from->parent[c] < 0 ? -1 : place[from->parent[c]];
             iso_region *to = area[i] < options->sparse_least ? raw : sparse;
             ISO_TRY(iso_region_add(to, from->point + from->first[c],
                                    from->first[c + 1] - from->first[c]));
-            if (to == sparse)
-                sparse->parent[sparse->count - 1] = k == islands.first[i] ? -1 : base;
+            place[c] = around;
+            if (to == sparse) {
+                sparse->parent[sparse->count - 1] = around;
+                place[c] = sparse->count - 1;
+            }
         }
     return iso_region_clean(solid, raw, ISO_FILL_POSITIVE, scratch);
 }
