@@ -21,6 +21,8 @@ COMMAND = re.compile(r"(\w+=\S* )*(isoslice|isoprint-virtual)( |$)")
 # What the guide's models are: small, but so that each command has something to do.
 MODELS = {
     "part.stl": plate_with_hole(10, 5, 4) + moved(box((0, 0, 0), (6, 6, 9)), 14, -3),
+    "core.stl": box((-9, -9, 0), (-2, 9, 9)),
+    "side.stl": box((3, -9, 0), (9, 9, 9)),
     "base.stl": box((60, 60, 0), (76, 72, 14)),
     "lid.stl": box((80, 60, 0), (94, 72, 2)),
     "plate.stl": prism([[(x, 0), (x + 8, 0), (x + 4, 7)] for x in (0, 12, 24)], 0, 3),
