@@ -119,6 +119,9 @@ static iso_status check_instance(const iso_points *bed, const iso_object *object
 static iso_status check_volume(const iso_plate *plate, const iso_options *options) {
     for (int32_t i = 0; i < plate->objects.count; i++) {
         const iso_object *object = &plate->objects.object[i];
+        if (object->max.z <= 0)
+            return iso_fail(ISO_OUTSIDE, "%s lies below the bed, up to %.2f mm; see ensure_on_bed",
+                            object->name, object->max.z);
         if (object->max.z > options->max_print_height)
             return iso_fail(ISO_OUTSIDE, "%s is %.2f mm high, max_print_height is %.2f mm",
                             object->name, object->max.z, options->max_print_height);

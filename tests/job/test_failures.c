@@ -57,6 +57,24 @@ static void test_too_large(void) {
     shape_free(&s);
 }
 
+static void test_below_the_bed(void) {
+    shape s = {0};
+    shape_box(&s, 0, 0, -5, 20, 20, 0);
+    expect_shape_failure(ISO_OUTSIDE, "below the bed", &s, "ensure_on_bed = 0");
+    shape_free(&s);
+    shape_box(&s, 0, 0, -9, 20, 20, -2);
+    expect_shape_failure(ISO_OUTSIDE, "below the bed", &s, "ensure_on_bed = 0");
+    shape_free(&s);
+}
+
+/* A grid of two pieces: options at odds, whatever the command line looks like. */
+static void test_grid_of_pieces(void) {
+    shape s = {0};
+    shape_box(&s, 0, 0, 0, 20, 20, 4);
+    expect_shape_failure(ISO_BAD_CONFIG, "duplicate_grid", &s, "duplicate_grid = 2,1\ncut = 2");
+    shape_free(&s);
+}
+
 /* A bed need not be a box: the corners of a cube reach beyond a triangle that its box is in. */
 static void test_odd_beds(void) {
     shape s = {0};
@@ -309,6 +327,8 @@ static void test_no_memory(void) {
 
 int main(void) {
     RUN(test_too_large);
+    RUN(test_below_the_bed);
+    RUN(test_grid_of_pieces);
     RUN(test_odd_beds);
     RUN(test_unreadable);
     RUN(test_second_file_is_bad);

@@ -273,7 +273,7 @@ static void test_no_room(void) {
     placing.bed_count = 2;
     CHECK_STATUS(ISO_USAGE, iso_objects_place(&instances, &objects, &placing, scratch));
     placing = (iso_placing){.bed = bed_250x210, .bed_count = 4, .columns = 2, .rows = 2};
-    CHECK_STATUS(ISO_USAGE, iso_objects_place(&instances, &objects, &placing, scratch));
+    CHECK_STATUS(ISO_BAD_CONFIG, iso_objects_place(&instances, &objects, &placing, scratch));
     iso_planar_scratch_free(scratch);
     iso_objects_free(&objects);
 }

@@ -71,7 +71,7 @@ static iso_status new_instances(placer *p, int64_t copies) {
 static iso_status place_grid(placer *p) {
     int32_t columns = p->placing->columns, rows = p->placing->rows;
     if (p->objects->count != 1)
-        return iso_fail(ISO_USAGE,
+        return iso_fail(ISO_BAD_CONFIG,
                         "a grid takes copies of one object, not of %d; see "
                         "duplicate_grid and duplicate",
                         p->objects->count);
