@@ -126,6 +126,12 @@ class Guide(unittest.TestCase):
             named = set(re.findall(r"`([a-z]+(?:_[a-z0-9]+)+)`", page.read_text()))
             self.assertEqual(set(), named - known, page.name)
 
+    def test_how_it_works_names_every_module(self):
+        text = (ROOT / "docs/how-it-works.md").read_text()
+        for path in (ROOT / "engine/src").iterdir():
+            if path.is_dir() or path.suffix == ".c":
+                self.assertIn(f"`{path.name}{'/' if path.is_dir() else ''}`", text)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=1)
