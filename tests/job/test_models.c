@@ -16,7 +16,7 @@ static const char *const settings[] = {
     "fill_density = 100%\nlayer_height = 0.15\nuse_relative_e_distances = 0\nretract_length = 0",
     "gcode_resolution = 0\nskirts = 0\ntop_solid_layers = 1\nbottom_solid_layers = 5\n"
     "retract_restart_extra = 0\nretract_before_travel = 0",
-    "nozzle_diameter = 0.8\nlayer_height = 0.5\nfirst_layer_height = 0.4\nperimeters = 1\n"
+    "nozzle_diameter = 0.8\nlayer_height = 0.5\nfirst_layer_height = 0.4\nperimeters = 1\nthin_walls = 0\n"
     "fill_density = 3%",
 };
 

@@ -80,7 +80,7 @@ static void test_strips(void) {
         iso_paths paths = {0};
         iso_gap_options options = outline();
         make_strip(&region, 30, width);
-        CHECK_OK(iso_gap_fill(&paths, &region, &options, NULL));
+        CHECK_OK(iso_gap_fill(&paths, &region, &options, scratch));
         figures f = measure(&paths);
         CHECK_EQUAL(1, paths.count);
         for (int32_t i = 0; i < paths.vertex_count; i++) {
@@ -103,7 +103,7 @@ static void test_wedge(void) {
     iso_paths paths = {0};
     iso_gap_options options = outline();
     make_wedge(&region, 30, 0.6);
-    CHECK_OK(iso_gap_fill(&paths, &region, &options, NULL));
+    CHECK_OK(iso_gap_fill(&paths, &region, &options, scratch));
     figures f = measure(&paths);
     CHECK_EQUAL(1, paths.count);
     CHECK(paths.vertex_count > 8 && paths.vertex_count < 40);
@@ -127,7 +127,7 @@ static void test_ring(void) {
         iso_bead bead = iso_bead_of(WIDTH, HEIGHT);
         iso_gap_options options = iso_gap_defaults(&bead, WIDTH / 5);
         make_annulus(&region, 5, 5 + width);
-        CHECK_OK(iso_gap_fill(&paths, &region, &options, NULL));
+        CHECK_OK(iso_gap_fill(&paths, &region, &options, scratch));
         figures f = measure(&paths);
         double area = (double)iso_region_double_area(&region) / 2 / MM / MM;
         CHECK_EQUAL(1, paths.count);
@@ -145,23 +145,21 @@ static void test_ring(void) {
 /* The axis itself: widths of a wedge and a ring within 2 %. */
 static void test_widths(void) {
     iso_region wedge = {0}, ring = {0};
-    iso_arena arena = {0};
     iso_medial medial;
     make_wedge(&wedge, 20, 1.2);
-    CHECK_OK(medial_axis(&medial, &wedge, 1000, 500, &arena));
+    CHECK_OK(medial_axis(&medial, &wedge, 1000, 500, scratch));
     CHECK_EQUAL(1, medial.count);
     double slope = 0.03 / sqrt(1 + 0.03 * 0.03);
     for (int32_t i = 0; i < medial.point_count; i++)
         if (medial.point[i].x < 19 * MM)
             CHECK_NEAR(1, medial.point[i].half / (medial.point[i].x * slope), 0.02);
     make_annulus(&ring, 3, 3.4);
-    CHECK_OK(medial_axis(&medial, &ring, 1000, 500, &arena));
+    CHECK_OK(medial_axis(&medial, &ring, 1000, 500, scratch));
     CHECK(medial.count == 1 && medial.line[0].closed);
     for (int32_t i = 0; i < medial.point_count; i++)
         CHECK_NEAR(2000, medial.point[i].half, 40);
     iso_region_free(&wedge);
     iso_region_free(&ring);
-    iso_arena_free(&arena);
 }
 
 /* Blades of 0.1 to 1.2 mm: their walls and what the outline is too narrow for cover them. */
@@ -230,6 +228,35 @@ static void test_gap_between_walls(void) {
     iso_paths_free(&paths);
 }
 
+/* Slivers between a ring and the lines in it: two sides so near each other that their pieces cross
+ * once they are rounded. */
+static void test_sides_that_all_but_touch(void) {
+    static const iso_point sliver[][6] = {
+        {{-107059, -28686},
+         {-103859, -38115},
+         {-103796, -37361},
+         {-103415, -36648},
+         {-102821, -36177},
+         {-104374, -36593}},
+        {{-38115, 103859},
+         {-37361, 103796},
+         {-36648, 103415},
+         {-36177, 102821},
+         {-36593, 104374},
+         {-28686, 107059}},
+    };
+    for (int i = 0; i < 2; i++) {
+        iso_region region = {0};
+        iso_medial medial;
+        CHECK_OK(iso_region_add(&region, sliver[i], 6));
+        CHECK_OK(iso_region_validate(&region, scratch));
+        CHECK_OK(medial_axis(&medial, &region, 900, 450, scratch));
+        for (int32_t k = 0; k < medial.point_count; k++)
+            CHECK(medial.point[k].half < 1000);
+        iso_region_free(&region);
+    }
+}
+
 static void test_no_memory(void) {
     iso_region region = {0};
     iso_gap_options options = outline();
@@ -239,7 +266,7 @@ static void test_no_memory(void) {
     for (; status == ISO_NO_MEMORY && n < 200; n++) {
         iso_paths paths = {0};
         iso_fail_allocation_after(n);
-        status = iso_gap_fill(&paths, &region, &options, NULL);
+        status = iso_gap_fill(&paths, &region, &options, scratch);
         iso_fail_allocation_after(-1);
         if (status != ISO_OK)
             CHECK(paths.count == 0 && paths.vertex_count == 0);
@@ -258,6 +285,7 @@ int main(void) {
     RUN(test_widths);
     RUN(test_thin_walls);
     RUN(test_gap_between_walls);
+    RUN(test_sides_that_all_but_touch);
     RUN(test_no_memory);
     iso_planar_scratch_free(scratch);
     return check_verdict();

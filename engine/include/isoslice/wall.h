@@ -23,7 +23,6 @@ typedef struct iso_wall_options {
     iso_path like;      /* object, group and tool of the paths */
 } iso_wall_options;
 
-struct iso_arena; /* the engine's scratch memory; NULL: the call has its own */
 
 typedef struct iso_gap_options {
     int32_t height;
@@ -41,7 +40,7 @@ typedef struct iso_gap_options {
  * place's. Rings give closed paths, all else open ones. On failure `paths` is as before. */
 ISO_API iso_status iso_gap_fill(iso_paths *paths, const iso_region *gap,
                                 const iso_gap_options *options,
-                                struct iso_arena *scratch) ISO_MUST_CHECK;
+                                iso_planar_scratch *scratch) ISO_MUST_CHECK;
 
 /* Gaps to fill with a bead's height, from `least` units of width up to two spacings; beads of at
  * least 1.5 widths. */

@@ -178,17 +178,15 @@ static iso_status draw(iso_gapping *g) {
 }
 
 iso_status iso_gap_fill(iso_paths *paths, const iso_region *gap, const iso_gap_options *options,
-                        iso_arena *scratch) {
+                        iso_planar_scratch *scratch) {
     iso_gapping g = {.paths = paths, .options = options};
     double least = (options->least + (double)options->border) / 2;
     int32_t count = paths->count, vertices = paths->vertex_count;
-    iso_arena own = {0}, *arena = scratch ? scratch : &own;
-    iso_arena_mark mark = iso_arena_get_mark(arena);
-    iso_status status = medial_axis(&g.medial, gap, options->step, least, arena);
+    iso_arena_mark mark = iso_arena_get_mark(&scratch->arena);
+    iso_status status = medial_axis(&g.medial, gap, options->step, least, scratch);
     if (status == ISO_OK)
         status = draw(&g);
-    iso_arena_pop(arena, mark);
-    iso_arena_free(&own);
+    iso_arena_pop(&scratch->arena, mark);
     if (status != ISO_OK) {
         paths->count = count;
         paths->vertex_count = vertices;
@@ -250,7 +248,7 @@ static iso_status fill_left(iso_paths *paths, iso_region *room, const iso_region
     ISO_TRY(iso_gap_left(left, reach->taken != 0 ? inner : region, reached,
                          reach->distance - reach->taken, scratch));
     gap_drop_small(left, options->least);
-    return iso_gap_fill(paths, left, options, &scratch->arena);
+    return iso_gap_fill(paths, left, options, scratch);
 }
 
 iso_status iso_gap_fill_left(iso_paths *paths, const iso_region *region, const iso_region *reached,

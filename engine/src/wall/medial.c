@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "planar/scratch.h"
 #include "planar/triangulation.h"
 
 /* A corner whose tip reaches further than this out of the circle at its root, in radii of that, is
@@ -356,16 +357,28 @@ static void trace_line(iso_medial *out, iso_axis *axis, int32_t start) {
     line->count = out->point_count - line->first;
 }
 
+/* Points on a side are rounded: where two sides all but touch, the pieces of one may cross the
+ * other's, and have to become a region again. */
+static iso_status triangulate_in_steps(iso_triangulation *t, const iso_region *region, int32_t step,
+                                       iso_planar_scratch *scratch) {
+    iso_region cut = {0}, clean = {0};
+    ISO_TRY(cut_sides(&cut, region, step, &scratch->arena));
+    iso_status status = iso_region_clean(&clean, &cut, ISO_FILL_POSITIVE, scratch);
+    if (status == ISO_OK)
+        status = triangulate(t, &clean, &scratch->arena);
+    iso_region_free(&clean);
+    return status;
+}
+
 iso_status medial_axis(iso_medial *out, const iso_region *region, int32_t step, double least,
-                       iso_arena *arena) {
-    iso_region cut = {0};
+                       iso_planar_scratch *scratch) {
+    iso_arena *arena = &scratch->arena;
     iso_triangulation t;
     iso_axis axis = {0};
     *out = (iso_medial){0};
     if (region->count == 0)
         return ISO_OK;
-    ISO_TRY(cut_sides(&cut, region, step, arena));
-    ISO_TRY(triangulate(&t, &cut, arena));
+    ISO_TRY(triangulate_in_steps(&t, region, step, scratch));
     if (t.triangle_count == 0)
         return ISO_OK;
 #ifndef NDEBUG

@@ -23,7 +23,7 @@ typedef struct iso_medial_line {
     bool blunt[2]; /* the place ends there rather than gets too narrow, first and last */
 } iso_medial_line;
 
-/* In the arena. */
+/* In the scratch's arena. */
 typedef struct iso_medial {
     int32_t count, point_count;
     iso_medial_line *line;
@@ -33,6 +33,6 @@ typedef struct iso_medial {
 /* `step` units at most between points that sides are cut into; `least` the half width from which on
  * a place counts. */
 iso_status medial_axis(iso_medial *out, const iso_region *region, int32_t step, double least,
-                       iso_arena *arena) ISO_MUST_CHECK;
+                       iso_planar_scratch *scratch) ISO_MUST_CHECK;
 
 #endif

@@ -144,7 +144,7 @@ static iso_status draw_thin(iso_walling *w, const iso_region *island, iso_region
     thin.like.rank = options->external_first ? 0 : options->count - 1;
     ISO_TRY(iso_gap_left(&w->left, island, loops, bead->width / 2, w->scratch));
     gap_drop_small(&w->left, least);
-    return iso_gap_fill(w->paths, &w->left, &thin, &w->scratch->arena);
+    return iso_gap_fill(w->paths, &w->left, &thin, w->scratch);
 }
 
 /* Whether the outline is too narrow somewhere shows when loops are shrunk: the outermost, or the
