@@ -106,6 +106,15 @@ class Guide(unittest.TestCase):
                 count += 1
         self.assertGreater(count, 40)
 
+    def test_macros_of_the_guide(self):
+        """What stands under "As `start_gcode`:" and the like is one."""
+        for page in PAGES:
+            for key, text in re.findall(r"As `(\w+_gcode)`:\n\n```\n(.*?)```", page.read_text(), re.S):
+                line = text.strip().replace("\\", "\\\\").replace("\n", "\\n")
+                (self.at / "macros.ini").write_text(f"{key} = {line}\n")
+                with self.subTest(f"{page.name}, {key}"):
+                    self.shell("isoslice part.stl --strict -c macros.ini -o macros.gcode")
+
     def test_pages_name_files_that_are_there(self):
         """Links and pictures of every page, and the index has every page."""
         for page in PAGES:
