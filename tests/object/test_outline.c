@@ -112,8 +112,46 @@ static void test_ring(void) {
     iso_planar_scratch_free(scratch);
 }
 
+/* A corner of a thread of 48 turns, some tenths of a micrometre off. */
+static shape_point thread_corner(int row, int sector) {
+    static const double crest[4] = {0, 0.5, 1, 0.5};
+    double u = 2 * SHAPE_PI * sector / 48;
+    uint64_t state = (uint64_t)(row * 48 + sector % 48) + 1;
+    double r = 5 + crest[(row + sector / 12) % 4] + (shape_random(&state) % 8) * 1e-4;
+    return (shape_point){r * cos(u), r * sin(u), row * 0.25 + (sector % 48) / 48.0 * 0.2};
+}
+
+/* The sides of every turn lie upon those of all others. Each meets its like of every other turn,
+ * but doesn't cross their neighbours as well. */
+static void test_thread(void) {
+    enum { ROWS = 192 };
+    shape s = {0};
+    iso_mesh mesh;
+    iso_region outline = {0};
+    iso_planar_scratch *scratch;
+    for (int j = 0; j < 48; j++) {
+        for (int k = 0; k < ROWS; k++)
+            shape_quad(&s, thread_corner(k, j), thread_corner(k, (j + 1) % 48),
+                       thread_corner(k + 1, (j + 1) % 48), thread_corner(k + 1, j));
+        shape_add(&s, (shape_point){0, 0, -1}, thread_corner(0, (j + 1) % 48), thread_corner(0, j));
+        shape_add(&s, (shape_point){0, 0, 30}, thread_corner(ROWS, j),
+                  thread_corner(ROWS, (j + 1) % 48));
+    }
+    if (!CHECK_OK(iso_planar_scratch_new(&scratch)) || !solid_made(&mesh, &s))
+        return;
+    if (CHECK_OK(outline_of(&outline, &mesh, 1, scratch))) {
+        CHECK_EQUAL(1, outline.count);
+        CHECK_NEAR(SHAPE_PI * 36, (double)iso_region_double_area(&outline) / 2e8, 1);
+        CHECK(iso_planar_get_counts(scratch).collisions < 1500000);
+    }
+    iso_region_free(&outline);
+    iso_mesh_free(&mesh);
+    iso_planar_scratch_free(scratch);
+}
+
 int main(void) {
     RUN(test_cells);
     RUN(test_ring);
+    RUN(test_thread);
     return check_verdict();
 }

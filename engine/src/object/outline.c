@@ -7,11 +7,15 @@
 /* Darts of silhouettes beyond which an outline isn't sought: a scan's folds. */
 enum { SILHOUETTE_MOST = 20000 };
 
+/* The turns of a thread lie upon each other but for rounding, and every side would cross its
+ * likes of every other turn many times. On a grid of 10 um they are the same. */
+enum { GRID = 100 };
+
 /* ---- what is covered ---- */
 
 typedef struct sketch {
     const iso_mesh *mesh;
-    bool *up;   /* [triangle] seen from above, rounded to units */
+    bool *up;   /* [triangle] seen from above, on the grid */
     bool *done; /* [dart] */
     iso_point *loop;
     int64_t count, capacity;
@@ -19,9 +23,14 @@ typedef struct sketch {
     iso_region raw;
 } sketch;
 
+static int32_t on_grid(double mm) {
+    int32_t units = iso_units(mm);
+    return (units + (units < 0 ? -GRID / 2 : GRID / 2)) / GRID * GRID;
+}
+
 static iso_point seen(const iso_mesh *mesh, int32_t dart) {
     const iso_vec3 *p = &mesh->position[mesh->origin[dart]];
-    return (iso_point){iso_units(p->x), iso_units(p->y)};
+    return (iso_point){on_grid(p->x), on_grid(p->y)};
 }
 
 static bool on_silhouette(const sketch *s, int32_t dart) {
