@@ -13,5 +13,7 @@ run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/build -D CMAKE_C_COMPILER=${CO
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SAMPLE} ${SCRATCH}/part.stl)
 run(${SCRATCH}/build/consumer ${SCRATCH}/part.stl ${SCRATCH}/part.gcode)
+run(${prefix}/bin/isoslice --strict -c ${prefix}/share/isoslice/profiles/printers/marlin-220.ini
+    ${SCRATCH}/part.stl -o ${SCRATCH}/part.gcode)
 run(${prefix}/bin/isoslice --version)
 file(REMOVE_RECURSE ${SCRATCH})
