@@ -32,8 +32,8 @@ typedef struct iso_layer {
     iso_layer_settings settings;
     int32_t index;                  /* counts from 0 */
     const iso_modifiers *modifiers; /* or NULL */
-    iso_region region; /* the outline */
-    iso_region *run;   /* [levels] what it shares with the layers above, coarsely (shell.h) */
+    iso_region region;              /* the outline */
+    iso_region *run; /* [levels] what it shares with the layers above, coarsely (shell.h) */
     int32_t levels;
     iso_region area; /* within the walls, island by island */
     int32_t *group;  /* [area.count] island of `region` that each contour lies in */

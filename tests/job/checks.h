@@ -67,9 +67,9 @@ static inline void check_levels(const print *p) {
     int wrong = 0;
     for (int32_t i = 0; i < p->move_count; i++) {
         const print_move *m = &p->move[i];
-        wrong += m->kind == MOVE_DRAW &&
-                 (m->az != m->bz ||
-                  fabs(m->bz - p->options.z_offset - p->level[m->layer].z) > 0.00051);
+        wrong +=
+            m->kind == MOVE_DRAW &&
+            (m->az != m->bz || fabs(m->bz - p->options.z_offset - p->level[m->layer].z) > 0.00051);
     }
     CHECK_EQUAL(0, wrong);
 }
