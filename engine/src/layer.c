@@ -238,6 +238,7 @@ static iso_status fill_modified(const iso_filling *f) {
                             overlap > 0 ? overlap : 0, f->hand->planar));
     for (int32_t k = 0; k <= layer->modifiers->count; k++) {
         iso_fill_options fill;
+        ISO_TRY(check(modified_piece(modified, k), f->hand));
         if (modifiers_fill(&fill, layer->modifiers, k, layer->index))
             ISO_TRY(fill_region(f, modified_piece(modified, k), &fill));
     }
