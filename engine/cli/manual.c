@@ -32,7 +32,7 @@ static const struct {
     {ISO_USAGE, "A command line that makes no sense."},
     {ISO_UNREADABLE, "A file that can't be read or is no model."},
     {ISO_UNSLICEABLE, "A model that can't be sliced truthfully."},
-    {ISO_OUTSIDE, "A model outside the printer's volume."},
+    {ISO_OUTSIDE, "A model outside the printer's volume, or no room for it on the bed."},
     {ISO_BAD_CONFIG, "An option out of its range, a configuration that can't be read."},
     {ISO_NOT_WRITTEN, "Output that could not be written."},
     {ISO_NOT_VERIFIED, "A result that failed its own check."},
@@ -205,6 +205,14 @@ static void man_flags(void) {
     }
 }
 
+/* "--layer-height", of a switch "--ironing, --no-ironing" */
+static const char *flags_of(char text[160], const iso_option_info *info) {
+    char name[64];
+    flag_name(name, info->key);
+    snprintf(text, 160, info->kind == ISO_VALUE_BOOL ? "%s, --no-%s" : "%s", name, name + 2);
+    return text;
+}
+
 static void man_options(void) {
     const char *category = "";
     printf(".SH OPTIONS OF A PRINT\n");
@@ -214,13 +222,13 @@ static void man_options(void) {
         "is ironing = 1, --no-ironing is ironing = 0.");
     for (int32_t i = 0; i < iso_option_count(); i++) {
         const iso_option_info *info = iso_option_at(i);
-        char range[RANGE_SIZE], unit[32], name[64];
+        char range[RANGE_SIZE], unit[32], flags[160];
         if (strcmp(category, info->category) != 0)
             printf(".SS %s\n", info->category);
         category = info->category;
         format_range(range, sizeof range, i);
         printf(".TP\n");
-        print_roff(flag_name(name, info->key));
+        print_roff(flags_of(flags, info));
         print_roff(info->help);
         char text[RANGE_SIZE + 256];
         snprintf(text, sizeof text, *info->initial ? "(%s%s%s; default %s)" : "(%s%s%s)", range,
