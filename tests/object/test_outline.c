@@ -1,7 +1,7 @@
 /* Outlines of cells at random against the columns that are filled, and their pieces. */
 #include "object/solid.h"
 
-#include "object/hull.h"
+#include "planar/hull.h"
 #include "object/outline.h"
 
 enum { SIDE = 7, TALL = 3 };

@@ -2,7 +2,7 @@
 #include "object/solid.h"
 
 #include "base/memory.h"
-#include "object/hull.h"
+#include "planar/hull.h"
 
 static const iso_vec2 bed_250x210[] = {{0, 0}, {250, 0}, {250, 210}, {0, 210}};
 

@@ -2,43 +2,15 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
+#include "planar/hull.h"
 
 #define PI 3.14159265358979323846
 
 enum { EXPANDED_SIZE = 64 << 10 /* as the G-code writer has it */ };
 
 /* ---- the place of the first layer ---- */
-
-static int order_of_points(const void *a, const void *b) {
-    const iso_vec2 *p = a, *q = b;
-    if (p->x != q->x)
-        return p->x < q->x ? -1 : 1;
-    return (p->y > q->y) - (p->y < q->y);
-}
-
-static double turn(iso_vec2 a, iso_vec2 b, iso_vec2 c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-/* Andrew's monotone chain: counter-clockwise, from sorted points; hull has room for count + 1. */
-static int32_t convex_hull(iso_vec2 *hull, const iso_vec2 *point, int32_t count) {
-    int32_t n = 0, lower;
-    for (int32_t i = 0; i < count; i++) {
-        while (n >= 2 && turn(hull[n - 2], hull[n - 1], point[i]) <= 0)
-            n--;
-        hull[n++] = point[i];
-    }
-    lower = n;
-    for (int32_t i = count - 2; i >= 0; i--) {
-        while (n > lower && turn(hull[n - 2], hull[n - 1], point[i]) <= 0)
-            n--;
-        hull[n++] = point[i];
-    }
-    return n > 1 ? n - 1 : n;
-}
 
 /* How far skirt and brim reach beyond the models, as PrusaSlicer counts it for these variables: to
  * the outer edge of the brim, or half a line beyond that of the skirt. */
@@ -69,40 +41,43 @@ static int32_t widen_hull(iso_vec2 *wide, const iso_vec2 *hull, int32_t count, d
     return n;
 }
 
-static iso_status set_hull(iso_texts *texts, iso_vec2 *point, int32_t count) {
+static iso_status set_hull(iso_texts *texts, const iso_vec2 *hull, int32_t corners) {
     iso_macro_job *job = &texts->job;
     double by = widening(texts->options);
-    iso_vec2 low = point[0], high = low, *hull = NULL;
-    qsort(point, (size_t)count, sizeof *point, order_of_points);
-    ISO_TRY(ISO_ALLOCATE(hull, count + 1));
-    int32_t corners = convex_hull(hull, point, count);
+    iso_vec2 low = hull[0], high = low;
     for (int32_t i = 0; i < corners; i++) {
         low = (iso_vec2){fmin(low.x, hull[i].x), fmin(low.y, hull[i].y)};
         high = (iso_vec2){fmax(high.x, hull[i].x), fmax(high.y, hull[i].y)};
     }
     job->print_min = (iso_vec2){low.x - by, low.y - by};
     job->print_max = (iso_vec2){high.x + by, high.y + by};
-    iso_status status = ISO_ALLOCATE(texts->hull, 2 * (int64_t)corners);
-    if (status == ISO_OK && by > 0) {
+    ISO_TRY(ISO_ALLOCATE(texts->hull, 2 * (int64_t)corners));
+    if (by > 0) {
         job->hull_count = widen_hull(texts->hull, hull, corners, by);
-    } else if (status == ISO_OK) {
+    } else {
         memcpy(texts->hull, hull, (size_t)corners * sizeof *hull);
         job->hull_count = corners;
     }
     job->hull = texts->hull;
-    iso_release(hull);
-    return status;
+    return ISO_OK;
 }
 
 iso_status texts_place(iso_texts *texts, const iso_region *first) {
     int32_t count = first->count ? first->first[first->count] : 0;
-    iso_vec2 *point;
+    iso_point *point;
+    iso_vec2 *hull;
     if (count == 0)
         return ISO_OK;
-    ISO_TRY(ISO_ALLOCATE(point, count));
-    for (int32_t i = 0; i < count; i++)
-        point[i] = (iso_vec2){iso_mm(first->point[i].x), iso_mm(first->point[i].y)};
-    iso_status status = set_hull(texts, point, count);
+    ISO_TRY(ISO_ALLOCATE(point, 2 * (int64_t)count + 1));
+    memcpy(point, first->point, (size_t)count * sizeof *point);
+    int32_t corners = hull_of(point + count, point, count);
+    iso_status status = ISO_ALLOCATE(hull, corners);
+    if (status == ISO_OK) {
+        for (int32_t i = 0; i < corners; i++)
+            hull[i] = (iso_vec2){iso_mm(point[count + i].x), iso_mm(point[count + i].y)};
+        status = set_hull(texts, hull, corners);
+        iso_release(hull);
+    }
     iso_release(point);
     return status;
 }

@@ -1,7 +1,7 @@
 #include "object/nest.h"
 
 #include "base/sort.h"
-#include "object/hull.h"
+#include "planar/hull.h"
 #include "object/lattice.h"
 #include "object/outline.h"
 #include "planar/predicate.h"

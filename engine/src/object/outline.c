@@ -1,7 +1,7 @@
 #include "object/outline.h"
 
 #include "object/cap.h"
-#include "object/hull.h"
+#include "planar/hull.h"
 #include "planar/predicate.h"
 
 /* Darts of silhouettes beyond which an outline isn't sought: a scan's folds. */

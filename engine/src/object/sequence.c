@@ -2,7 +2,7 @@
 
 #include "base/memory.h"
 #include "base/sort.h"
-#include "object/hull.h"
+#include "planar/hull.h"
 #include "planar/predicate.h"
 
 typedef struct standing {

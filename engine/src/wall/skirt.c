@@ -3,39 +3,14 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "base/sort.h"
-#include "planar/predicate.h"
+#include "planar/hull.h"
 
-static bool hull_less(const iso_point *a, const iso_point *b) {
-    return point_less(*a, *b);
-}
-ISO_SORT(sort_hull, iso_point, hull_less)
-
-/* Andrew's monotone chain: lower hull left to right, then the upper one back. `point` is sorted in
- * place; hull has room for count + 1. Returns the hull's size, counter-clockwise. */
-static int32_t convex_hull(iso_point *hull, iso_point *point, int32_t count) {
-    sort_hull(point, count);
-    int32_t n = 0;
-    for (int32_t i = 0; i < count; i++) {
-        while (n >= 2 && orient2d(hull[n - 2], hull[n - 1], point[i]) <= 0)
-            n--;
-        hull[n++] = point[i];
-    }
-    int32_t lower = n + 1;
-    for (int32_t i = count - 1; i-- > 0;) {
-        while (n >= lower && orient2d(hull[n - 2], hull[n - 1], point[i]) <= 0)
-            n--;
-        hull[n++] = point[i];
-    }
-    return n - 1;
-}
-
-static iso_status hull_of(iso_region *out, const iso_region *region) {
+static iso_status gather_hull(iso_region *out, const iso_region *region) {
     int32_t count = region->first[region->count];
     iso_point *point;
     ISO_TRY(ISO_ALLOCATE(point, 2 * (int64_t)count + 1));
     memcpy(point, region->point, (size_t)count * sizeof *point);
-    int32_t n = convex_hull(point + count, point, count);
+    int32_t n = hull_of(point + count, point, count);
     iso_status status = iso_region_add(out, point + count, n);
     iso_release(point);
     return status;
@@ -84,7 +59,7 @@ iso_status iso_skirt(iso_paths *paths, const iso_region *region, const iso_skirt
         return ISO_OK;
     iso_region hull = {0}, loop = {0};
     int32_t count = paths->count, vertices = paths->vertex_count;
-    iso_status status = hull_of(&hull, region);
+    iso_status status = gather_hull(&hull, region);
     if (status == ISO_OK)
         status = draw_skirt(paths, &hull, &loop, options, scratch);
     if (status != ISO_OK) {

@@ -1,7 +1,7 @@
 /* Convex polygons in units: counter-clockwise, no three corners on a line, the lowest of the
  * leftmost corners first. */
-#ifndef ISO_OBJECT_HULL_H
-#define ISO_OBJECT_HULL_H
+#ifndef ISO_PLANAR_HULL_H
+#define ISO_PLANAR_HULL_H
 
 #include <isoslice/planar.h>
 
