@@ -282,6 +282,33 @@ static void a_long_round_offset_of_short_edges(void) {
     iso_region_free(&circle);
 }
 
+/* The arcs around the corners of a comb's teeth all cross each other, but for the gaps between them
+ * being closed first. It grows as its box does. */
+static void a_long_round_offset_of_a_comb(void) {
+    enum { TEETH = 300, PITCH = 5000, GAP = 500, LONG = 100000, FAR = 60000 };
+    iso_region comb = {0};
+    iso_point *point = malloc((4 * TEETH + 2) * sizeof *point);
+    int32_t count = 2;
+    point[0] = (iso_point){0, 0};
+    point[1] = (iso_point){TEETH * PITCH - GAP, 0};
+    for (int32_t k = TEETH; k-- > 0;) {
+        point[count++] = (iso_point){(k + 1) * PITCH - GAP, LONG};
+        point[count++] = (iso_point){k * PITCH, LONG};
+        if (k > 0) {
+            point[count++] = (iso_point){k * PITCH, LONG / 4};
+            point[count++] = (iso_point){k * PITCH - GAP, LONG / 4};
+        }
+    }
+    must_add(&comb, point, count);
+    double width = TEETH * PITCH - GAP, around = 2 * (width + LONG);
+    double area = width * LONG + around * FAR + pi * FAR * (double)FAR;
+    int64_t before = iso_planar_get_counts(scratch).collisions;
+    CHECK_NEAR(area, offset_area(&comb, FAR, ISO_JOIN_ROUND, NULL), around * 8);
+    CHECK(iso_planar_get_counts(scratch).collisions - before < 100 * TEETH);
+    iso_region_free(&comb);
+    free(point);
+}
+
 /* Arcs almost as coarse as the distance: what a chord leaves out, no other winding may count in. */
 static void coarse_arcs(void) {
     static const struct coarse {
@@ -366,6 +393,7 @@ int main(void) {
     RUN(a_circle);
     RUN(a_long_edge_is_no_fillet);
     RUN(a_long_round_offset_of_short_edges);
+    RUN(a_long_round_offset_of_a_comb);
     RUN(coarse_arcs);
     RUN(out_of_range);
     RUN(a_hole_at_the_end_of_the_range);

@@ -271,6 +271,10 @@ static iso_status offset_once(iso_region *out, const iso_region *in,
  * steps come. */
 enum { STEP_EDGES = 32, STEPS_MAX = 8, STEP_POINTS = 64 };
 
+/* Nor may the arcs around opening corners together get longer than so many times around all: those
+ * of a comb's n teeth would cross each other n^2 times. After a short step its gaps are closed. */
+#define STEP_CROWD 2.0
+
 static double mean_edge(const iso_region *region) {
     double sum = 0;
     int32_t count = region->first[region->count];
@@ -285,11 +289,43 @@ static double mean_edge(const iso_region *region) {
     return sum / count;
 }
 
+/* By how much all corners open together that growing opens, in radians, those of a turn around as
+ * its chord. */
+static double opening(const iso_region *region) {
+    double sum = 0;
+    for (int32_t c = 0; c < region->count; c++) {
+        int32_t first = region->first[c], end = region->first[c + 1];
+        iso_side in = side_of(region->point[end - 1], region->point[first], 1);
+        for (int32_t i = first; i < end; i++) {
+            iso_side out =
+                side_of(region->point[i], region->point[i + 1 == end ? first : i + 1], 1);
+            if (cross2(in.along, out.along) > 0)
+                sum += sqrt(fmax(0, 2 - 2 * dot(in.along, out.along)));
+            in = out;
+        }
+    }
+    return sum;
+}
+
+/* Once around the box. */
+static double way_around(const iso_region *region) {
+    iso_point low = region->point[0], high = low;
+    for (int32_t i = 1; i < region->first[region->count]; i++) {
+        iso_point p = region->point[i];
+        low = (iso_point){p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y};
+        high = (iso_point){p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y};
+    }
+    return 2 * ((double)high.x - low.x + high.y - low.y);
+}
+
 /* How many doubling steps: 1 + 2 + ... + 2^(n - 1) first steps make the distance. */
-static int count_steps(const iso_region *in, double distance) {
+static int count_steps(const iso_region *in, double growth) {
     if (in->count == 0 || in->first[in->count] < STEP_POINTS)
         return 1;
-    double step = STEP_EDGES * mean_edge(in), reach = step;
+    double distance = fabs(growth), step = STEP_EDGES * mean_edge(in);
+    if (growth > 0)
+        step = fmin(step, STEP_CROWD * way_around(in) / (opening(in) + 1));
+    double reach = step;
     int steps = 1;
     for (; steps < STEPS_MAX && reach < distance; steps++)
         reach += step *= 2;
@@ -322,7 +358,7 @@ iso_status iso_offset(iso_region *out, const iso_region *in, const iso_offset_op
                         "a mitre limit of at least 1");
     }
     bool adds_up = options->join == ISO_JOIN_ROUND;
-    int steps = adds_up ? count_steps(in, fabs((double)options->distance)) : 1;
+    int steps = adds_up ? count_steps(in, options->distance) : 1;
     iso_status status = steps == 1 ? offset_once(out, in, options, scratch)
                                    : offset_in_steps(out, in, options, steps, scratch);
     if (status != ISO_OK)
