@@ -40,7 +40,9 @@ class Profiles(unittest.TestCase):
             done = subprocess.run([PRINTER, "--run", self.at / "part.gcode", "--json", "--bed",
                                    f"{x}x{y}x{wanted['max_print_height']}"],
                                   capture_output=True, timeout=120)
-            self.assertEqual(0, done.returncode, done.stderr.decode()[:1000])
+            self.assertEqual((0, ""), (done.returncode, done.stderr.decode()[:1000]))
+            limit = float(wanted["filament_max_volumetric_speed"])
+            self.assertLess(json.loads(done.stdout)["highest_flow"], 1.15 * limit)
         return text, json.loads((self.at / "report.json").read_text())
 
     def test_there_are_some_of_each_kind(self):

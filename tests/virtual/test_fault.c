@@ -109,6 +109,15 @@ static void test_clean_print_has_none(void) {
     fio_virtual_printer_free(printer);
 }
 
+/* A micrometre with as much plastic as rounding makes of it says nothing of the flow. */
+static void test_flow_of_paths_that_are_rounding(void) {
+    fio_virtual_printer *printer =
+        rig_after(READY "G1 X100 Y0 E2 F6000\nG1 X100.001 E.0001\nG1 X100.03 E.003");
+    CHECK_EQUAL(1, rig_statistics(printer)->count[FIO_WARNING_FLOW]);
+    CHECK_NEAR(100 * 2.405 * 0.003 / 0.029, rig_statistics(printer)->highest_flow, 0.05);
+    fio_virtual_printer_free(printer);
+}
+
 static void test_what_is_done_about_them(void) {
     fio_virtual_printer *printer =
         rig_after(READY "G1 X999 Y-3\nG1 Z5 E300\nG2 X1 Y1\nM104 S999\nM204 P0\nG1 F0");
@@ -151,6 +160,7 @@ static void test_all_counted_a_hundred_kept(void) {
 int main(void) {
     RUN(test_every_kind);
     RUN(test_clean_print_has_none);
+    RUN(test_flow_of_paths_that_are_rounding);
     RUN(test_what_is_done_about_them);
     RUN(test_all_counted_a_hundred_kept);
     return check_verdict();

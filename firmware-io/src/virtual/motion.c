@@ -8,6 +8,8 @@
 #define VOLUME_TOLERANCE 1e-6
 #define RETRACTED_TOLERANCE 0.01
 #define LEVEL_TOLERANCE 1e-4
+/* mm: of a shorter path, rounded to micrometres, nobody can tell the flow. */
+#define FLOW_LENGTH 0.02
 
 #define DEFAULT_FEEDRATE 25. /* mm/s, before any F: Marlin's 1500 mm/min */
 
@@ -231,6 +233,8 @@ static void count_path(fio_virtual_printer *printer, const double end[3], double
         statistics->layers++;
         printer->extrusion_z = end[2];
     }
+    if (length < FLOW_LENGTH)
+        return;
     if (flow > statistics->highest_flow)
         statistics->highest_flow = flow;
     if (flow > printer->options.maximum_flow * 1.0001)
