@@ -54,6 +54,12 @@ def commands_of(page):
     return found
 
 
+def anchors_of(page):
+    """As GitHub names them."""
+    titles = re.findall(r"(?m)^#+ (.*)$", page.read_text())
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
 class Guide(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -118,9 +124,13 @@ class Guide(unittest.TestCase):
     def test_pages_name_files_that_are_there(self):
         """Links and pictures of every page, and the index has every page."""
         for page in PAGES:
-            for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
-                if not target.startswith("http"):
-                    self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
+            for target, anchor in re.findall(r"\]\(([^)#\s]*)(#[^)]*)?\)", page.read_text()):
+                if target.startswith("http"):
+                    continue
+                path = page.parent / target if target else page
+                self.assertTrue(path.exists(), f"{page.name}: {target}")
+                if anchor:
+                    self.assertIn(anchor[1:], anchors_of(path), f"{page.name}: {target}{anchor}")
         index = (ROOT / "docs/index.md").read_text()
         for page in (ROOT / "docs").glob("*.md"):
             if page.name != "index.md":
