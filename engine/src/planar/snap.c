@@ -166,15 +166,16 @@ static iso_status collide_inside_runs(iso_snap *snap, const iso_grid_layer *laye
     return ISO_OK;
 }
 
-/* A run in a cell. `x0` repeats what sorting looks at. */
+/* A run in a cell. The box is the run's: most looks at a resident end there. */
 typedef struct iso_resident {
+    iso_box box;
     const iso_run *run;
-    int32_t x0;
     bool bent;
 } iso_resident;
 
 static bool resident_less(const iso_resident *a, const iso_resident *b) {
-    return a->x0 != b->x0 ? a->x0 < b->x0 : a->run->first < b->run->first;
+    return a->box.min.x != b->box.min.x ? a->box.min.x < b->box.min.x
+                                        : a->run->first < b->run->first;
 }
 ISO_SORT(sort_residents, iso_resident, resident_less)
 
@@ -186,23 +187,26 @@ static int32_t fetch_residents(iso_resident *out, const iso_snap *snap, int32_t 
         const iso_run *run = &l->run[l->entry[i]];
         if (run->count == 1 && snap->edges->flags[run->first] & EDGE_DEAD)
             continue;
-        out[n++] = (iso_resident){run, run->box.min.x, run_is_bent(&snap->grid, run)};
+        out[n++] = (iso_resident){run->box, run, run_is_bent(&snap->grid, run)};
     }
     return n;
 }
 
 /* Runs that stand in all cells of their boxes are tried in one of those they share: that of the
  * least corner of what the boxes share. */
-static iso_status collide_residents(iso_snap *snap, const iso_resident *a, const iso_resident *b,
-                                    int32_t cell) {
-    const iso_box *p = &a->run->box, *q = &b->run->box;
+static inline bool is_tried_here(const iso_snap *snap, const iso_resident *a, const iso_resident *b,
+                                 int32_t cell) {
+    const iso_box *p = &a->box, *q = &b->box;
     if (!boxes_meet(p, q))
-        return ISO_OK;
+        return false;
     iso_point corner = {p->min.x > q->min.x ? p->min.x : q->min.x,
                         p->min.y > q->min.y ? p->min.y : q->min.y};
-    if (!a->bent && !b->bent && grid_cell(&snap->grid, corner) != cell)
-        return ISO_OK;
-    return collide_runs(snap, a->run, b->run);
+    return a->bent || b->bent || grid_cell(&snap->grid, corner) == cell;
+}
+
+static inline iso_status collide_residents(iso_snap *snap, const iso_resident *a,
+                                           const iso_resident *b, int32_t cell) {
+    return is_tried_here(snap, a, b, cell) ? collide_runs(snap, a->run, b->run) : ISO_OK;
 }
 
 enum { CROWD = 24 }; /* residents from which sorting pays */
@@ -214,7 +218,7 @@ static iso_status collide_within(iso_snap *snap, iso_resident *resident, int32_t
         sort_residents(resident, count);
     for (int32_t i = 0; i < count; i++) {
         for (int32_t j = i + 1; j < count; j++) {
-            if (sorted && resident[j].x0 > resident[i].run->box.max.x)
+            if (sorted && resident[j].box.min.x > resident[i].box.max.x)
                 break;
             ISO_TRY(collide_residents(snap, &resident[i], &resident[j], cell));
         }
@@ -232,7 +236,7 @@ static int32_t first_from(const iso_crowd *crowd, int64_t x) {
     int32_t low = 0, end = crowd->count;
     while (low < end) {
         int32_t middle = low + (end - low) / 2;
-        if (crowd->resident[middle].x0 < x)
+        if (crowd->resident[middle].box.min.x < x)
             low = middle + 1;
         else
             end = middle;
@@ -245,8 +249,8 @@ static iso_status collide_starts(iso_snap *snap, const iso_crowd *a, const iso_c
                                  int32_t cell, int from) {
     for (int32_t i = 0; i < a->count; i++) {
         const iso_resident *r = &a->resident[i];
-        for (int32_t j = first_from(b, (int64_t)r->x0 + from);
-             j < b->count && b->resident[j].x0 <= r->run->box.max.x; j++)
+        for (int32_t j = first_from(b, (int64_t)r->box.min.x + from);
+             j < b->count && b->resident[j].box.min.x <= r->box.max.x; j++)
             ISO_TRY(collide_residents(snap, r, &b->resident[j], cell));
     }
     return ISO_OK;

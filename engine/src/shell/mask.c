@@ -52,7 +52,8 @@ iso_status mask_of(iso_mask *mask, const iso_region *region, const iso_box *box,
     double width = (double)box->max.x - box->min.x, height = (double)box->max.y - box->min.y;
     while ((width / cell + 3) * (height / cell + 3) > CELLS_MAX)
         cell *= 2;
-    *mask = (iso_mask){.origin = {box->min.x - cell, box->min.y - cell}, .cell = cell};
+    *mask = (iso_mask){
+        .origin = {box->min.x - cell, box->min.y - cell}, .cell = cell, .per_unit = 1.0 / cell};
     mask->columns = (int32_t)(width / cell) + 3;
     mask->rows = (int32_t)(height / cell) + 3;
     mask->words = mask->columns / 64 + 1;

@@ -12,6 +12,7 @@
 typedef struct iso_mask {
     iso_point origin; /* lower left corner of the lowest leftmost cell */
     int32_t cell;     /* units */
+    double per_unit;  /* cells */
     int32_t columns, rows;
     int32_t words; /* of a row; cell (c, r) is bit c & 63 of bit[r * words + c / 64] */
     uint64_t *bit;
@@ -30,10 +31,14 @@ iso_status mask_grow(iso_mask *mask, iso_arena *arena) ISO_MUST_CHECK;
 bool masks_share_core(iso_box *core, const iso_mask *a, const iso_mask *b);
 
 static inline bool mask_has(const iso_mask *mask, iso_point p) {
-    int32_t c = (p.x - mask->origin.x) / mask->cell, r = (p.y - mask->origin.y) / mask->cell;
-    if (p.x < mask->origin.x || p.y < mask->origin.y || c >= mask->columns || r >= mask->rows)
+    if (p.x < mask->origin.x || p.y < mask->origin.y)
         return false;
-    return mask->bit[(int64_t)r * mask->words + (c >> 6)] >> (c & 63) & 1;
+    /* half a unit keeps the products off the whole numbers: these are quotients rounded down */
+    int64_t c = (int64_t)((p.x - mask->origin.x + 0.5) * mask->per_unit);
+    int64_t r = (int64_t)((p.y - mask->origin.y + 0.5) * mask->per_unit);
+    if (c >= mask->columns || r >= mask->rows)
+        return false;
+    return mask->bit[r * mask->words + (c >> 6)] >> (c & 63) & 1;
 }
 
 /* The box of the region; false if there is nothing in it. */

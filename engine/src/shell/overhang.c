@@ -47,11 +47,13 @@ static int32_t count_steps(iso_point a, iso_point b, int32_t cell) {
 
 /* The end but its own; it begins the next edge. */
 static bool edge_in_mask(const iso_mask *mask, iso_point a, iso_point b) {
+    if (!mask_has(mask, a))
+        return false;
     int32_t steps = count_steps(a, b, mask->cell);
     for (int32_t k = 1; k < steps; k++)
         if (!mask_has(mask, between(a, b, (double)k / steps)))
             return false;
-    return mask_has(mask, a);
+    return true;
 }
 
 static bool path_in_mask(const iso_mask *mask, const iso_paths *paths, const iso_path *path) {

@@ -24,19 +24,23 @@ static iso_box box_of_region(const iso_region *region) {
     return box;
 }
 
+/* A mark stands for the REACH rows below and above it as well. */
 static void mark_around(iso_marks *m, int32_t column, int32_t row) {
     const uint64_t run = (1 << (2 * REACH + 1)) - 1;
-    int32_t first = column - REACH, word = first >> 6, bit = first & 63;
-    for (int32_t r = row - REACH; r <= row + REACH; r++) {
-        uint64_t *at = m->mark + (int64_t)r * m->words + word;
-        at[0] |= run << bit;
-        if (bit > 64 - (2 * REACH + 1))
-            at[1] |= run >> (64 - bit);
-    }
+    int32_t first = column - REACH, bit = first & 63;
+    uint64_t *at = m->mark + (int64_t)row * m->words + (first >> 6);
+    at[0] |= run << bit;
+    if (bit > 64 - (2 * REACH + 1))
+        at[1] |= run >> (64 - bit);
 }
 
 static bool is_marked(const iso_marks *m, int32_t column, int32_t row) {
-    return m->mark[(int64_t)row * m->words + (column >> 6)] >> (column & 63) & 1;
+    int64_t stride = m->words;
+    const uint64_t *at = m->mark + row * stride + (column >> 6);
+    uint64_t any = at[0];
+    for (int64_t off = stride; off <= REACH * stride; off += stride)
+        any |= at[-off] | at[off];
+    return any >> (column & 63) & 1;
 }
 
 /* Is point i of the contour a sharp corner of the region, but not as sharp as a tip that gets a
@@ -57,18 +61,21 @@ static bool walk(iso_marks *m, const iso_region *region, bool marking) {
         const iso_point *point = region->point + region->first[c];
         int32_t count = region->first[c + 1] - region->first[c];
         int32_t run = 0;
+        bool corner = !marking && is_corner(point, count, count - 1);
         for (int32_t i = 0, last = count - 1; i < count; last = i++) {
             iso_point a = point[last], b = point[i];
             double x = (a.x - m->origin.x) * scale, y = (a.y - m->origin.y) * scale;
             double dx = (b.x - a.x) * scale, dy = (b.y - a.y) * scale;
             double longer = fabs(dx) > fabs(dy) ? fabs(dx) : fabs(dy);
             int32_t steps = (int32_t)longer + 1, from = 0, to = steps;
-            if (!marking && is_corner(point, count, last))
+            dx /= steps, dy /= steps;
+            if (corner)
                 from = CORNER_CELLS;
-            if (!marking && is_corner(point, count, i))
+            corner = !marking && is_corner(point, count, i);
+            if (corner)
                 to -= CORNER_CELLS;
             for (int32_t k = from; k < to; k++) {
-                int32_t column = (int32_t)(x + dx * k / steps), row = (int32_t)(y + dy * k / steps);
+                int32_t column = (int32_t)(x + dx * k), row = (int32_t)(y + dy * k);
                 if (marking)
                     mark_around(m, column, row);
                 else if (is_marked(m, column, row))
