@@ -92,6 +92,7 @@ enum { BOX_CELLS = 4 };
 typedef struct visitor {
     const iso_edge_grid *grid;
     int32_t *first, *in; /* in: NULL while counting */
+    int32_t *only;       /* the one cell of each edge, as most have, or -1 */
     int64_t entries;
 } visitor;
 
@@ -114,6 +115,7 @@ static void visit_cells(visitor *v, const iso_path_edge *e, int32_t edge) {
     int32_t right = cell_at((x0 < x1 ? x1 : x0) + 2, inverse, grid->columns) + 1;
     int32_t low, high;
     rows_of(&low, &high, grid, e->a, e->b);
+    v->only[edge] = right - left == 1 && high - low == 1 ? low * grid->columns + left : -1;
     int small = (right - left) * (int64_t)(high - low) <= BOX_CELLS;
     for (int32_t row = low; row < high; row++) {
         iso_cells c = small ? (iso_cells){left, right} : cells_of(grid, e->a, e->b, row);
@@ -131,6 +133,7 @@ iso_status iso_edge_grid_build(iso_edge_grid *grid, const iso_path_edge *edge, i
     ISO_TRY(ISO_PUSH(grid->first, scratch, (int64_t)cells + 2));
     memset(grid->first, 0, ((size_t)cells + 2) * sizeof *grid->first);
     visitor v = {.grid = grid, .first = grid->first};
+    ISO_TRY(ISO_PUSH(v.only, scratch, count));
     for (int32_t i = 0; i < count; i++)
         visit_cells(&v, &edge[i], i);
     if (v.entries > INT32_MAX)
@@ -139,8 +142,12 @@ iso_status iso_edge_grid_build(iso_edge_grid *grid, const iso_path_edge *edge, i
     for (int32_t c = 0; c < cells; c++)
         grid->first[c + 2] += grid->first[c + 1];
     v.in = grid->in;
-    for (int32_t i = 0; i < count; i++)
-        visit_cells(&v, &edge[i], i);
+    for (int32_t i = 0; i < count; i++) {
+        if (v.only[i] >= 0)
+            v.in[v.first[v.only[i] + 1]++] = i;
+        else
+            visit_cells(&v, &edge[i], i);
+    }
     return ISO_OK;
 }
 

@@ -89,14 +89,14 @@ static void look_outside(walls *w, const iso_edge_grid *grid, int32_t i, rank_ru
     }
 }
 
-static iso_status build_grid(iso_edge_grid *grid, const walls *w) {
+static iso_status build_grid(iso_edge_grid *grid, const walls *w, rank_run run) {
     int32_t n = 0;
     iso_path_edge *edge;
-    for (int32_t i = 0; i < w->count; i++)
+    for (int32_t i = run.begin; i < run.end; i++)
         n += wall(w, i)->count;
     ISO_TRY(ISO_PUSH(edge, w->o->scratch, n));
     n = 0;
-    for (int32_t i = 0; i < w->count; i++) {
+    for (int32_t i = run.begin; i < run.end; i++) {
         const iso_path *path = wall(w, i);
         const iso_path_vertex *v = vertex_of(w, i);
         for (int32_t k = 0; k < path->count - !path->closed; k++)
@@ -107,7 +107,7 @@ static iso_status build_grid(iso_edge_grid *grid, const walls *w) {
 
 static iso_status find_beside(walls *w) {
     iso_edge_grid grid = {0};
-    int built = 0;
+    int32_t built = -1; /* the grid is of the run that begins there */
     for (int32_t i = 0; i < w->count * SIDES; i++)
         w->beside[i] = -1;
     for (rank_run r = {0, 0}; r.begin < w->count; r.begin = r.end) {
@@ -117,9 +117,9 @@ static iso_status find_beside(walls *w) {
         if (wall(w, r.begin)->rank == w->external_rank)
             continue;
         rank_run outside = next_outside(w, r);
-        if (outside.end - outside.begin > 1 && !built) {
-            ISO_TRY(build_grid(&grid, w));
-            built = 1;
+        if (outside.end - outside.begin > 1 && built != outside.begin) {
+            ISO_TRY(build_grid(&grid, w, outside));
+            built = outside.begin;
         }
         for (int32_t i = r.begin; i < r.end && outside.end > outside.begin; i++)
             if (wall(w, i)->closed)
