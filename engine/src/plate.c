@@ -83,9 +83,10 @@ static iso_status make_objects(iso_plate *plate, iso_report *report, const iso_o
     return status;
 }
 
-static bool box_on_bed(const iso_points *bed, const iso_object *object, iso_vec2 by) {
-    double x[2] = {object->min.x + by.x, object->max.x + by.x};
-    double y[2] = {object->min.y + by.y, object->max.y + by.y};
+static bool box_on_bed(const iso_points *bed, const iso_object *object, iso_vec2 by,
+                       double growth) {
+    double x[2] = {object->min.x + by.x - growth, object->max.x + by.x + growth};
+    double y[2] = {object->min.y + by.y - growth, object->max.y + by.y + growth};
     bool on = true;
     for (int i = 0; i < 4; i++)
         on = on && plate_on_bed(bed, x[i & 1], y[i >> 1]);
@@ -100,13 +101,22 @@ static bool nearly_on_bed(const iso_points *bed, double x, double y) {
            plate_on_bed(bed, x + slack, y + slack);
 }
 
-static iso_status check_instance(const iso_points *bed, const iso_object *object, iso_vec2 by) {
-    if (box_on_bed(bed, object, by))
+static bool fits_on_bed(const iso_points *bed, double x, double y, double growth) {
+    return nearly_on_bed(bed, x, y) &&
+           (growth == 0 ||
+            (nearly_on_bed(bed, x - growth, y) && nearly_on_bed(bed, x + growth, y) &&
+             nearly_on_bed(bed, x, y - growth) && nearly_on_bed(bed, x, y + growth)));
+}
+
+/* Outlines may be printed that much larger than they are. */
+static iso_status check_instance(const iso_points *bed, const iso_object *object, iso_vec2 by,
+                                 double growth) {
+    if (box_on_bed(bed, object, by, growth))
         return ISO_OK;
     for (int32_t m = 0; m < object->mesh_count; m++)
         for (int32_t v = 0; v < object->mesh[m].vertex_count; v++) {
             iso_vec3 p = object->mesh[m].position[v];
-            if (!nearly_on_bed(bed, p.x + by.x, p.y + by.y))
+            if (!fits_on_bed(bed, p.x + by.x, p.y + by.y, growth))
                 return iso_fail(ISO_OUTSIDE,
                                 "%s, %.2f x %.2f mm, reaches beyond the bed at (%.2f, %.2f); see "
                                 "bed_shape, center and arrange",
@@ -129,7 +139,8 @@ static iso_status check_volume(const iso_plate *plate, const iso_options *option
     for (int32_t i = 0; i < plate->instances.count; i++) {
         const iso_instance *instance = &plate->instances.instance[i];
         iso_vec2 by = {iso_mm(instance->by.x), iso_mm(instance->by.y)};
-        ISO_TRY(check_instance(&options->bed_shape, &plate->objects.object[instance->object], by));
+        ISO_TRY(check_instance(&options->bed_shape, &plate->objects.object[instance->object], by,
+                               settings_of_growth(options)));
     }
     return ISO_OK;
 }

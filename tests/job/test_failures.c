@@ -67,6 +67,25 @@ static void test_below_the_bed(void) {
     shape_free(&s);
 }
 
+/* What makes the part larger than its model has to fit as well. */
+static void test_grown_beyond_the_bed(void) {
+    static const char *const grown[] = {"fuzzy_skin = external", "fuzzy_skin = all",
+                                        "xy_size_compensation = 0.3"};
+    shape s = {0};
+    shape_box(&s, 0.2, 50, 0, 20, 70, 2);
+    for (int i = 0; i < 3; i++) {
+        char settings[128];
+        print p;
+        snprintf(settings, sizeof settings, "skirts = 0\ndont_arrange = 1\n%s", grown[i]);
+        expect_shape_failure(ISO_OUTSIDE, "bed", &s, settings);
+        snprintf(settings, sizeof settings, "skirts = 0\ncenter = 20,60\n%s", grown[i]);
+        print_shape(&p, &s, settings);
+        CHECK(p.level_count > 0);
+        print_free(&p);
+    }
+    shape_free(&s);
+}
+
 /* A grid of two pieces: options at odds, whatever the command line looks like. */
 static void test_grid_of_pieces(void) {
     shape s = {0};
@@ -328,6 +347,7 @@ static void test_no_memory(void) {
 int main(void) {
     RUN(test_too_large);
     RUN(test_below_the_bed);
+    RUN(test_grown_beyond_the_bed);
     RUN(test_grid_of_pieces);
     RUN(test_odd_beds);
     RUN(test_unreadable);

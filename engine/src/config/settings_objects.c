@@ -39,9 +39,15 @@ static double brim_of(const iso_options *options) {
     return outside && options->brim_width > 0 ? options->brim_width + options->brim_separation : 0;
 }
 
+double settings_of_growth(const iso_options *options) {
+    double fuzz = options->fuzzy_skin == ISO_FUZZY_NONE ? 0 : options->fuzzy_skin_thickness;
+    return fmax(0, options->xy_size_compensation) + fuzz;
+}
+
 iso_placing settings_of_placing(const iso_options *options) {
     const iso_numbers *grid = &options->duplicate_grid;
-    double brim = brim_of(options), distance = options->duplicate_distance;
+    double around = brim_of(options) + settings_of_growth(options),
+           distance = options->duplicate_distance;
     if (options->complete_objects)
         distance = fmax(distance, options->extruder_clearance_radius);
     return (iso_placing){.bed = options->bed_shape.point,
@@ -53,8 +59,8 @@ iso_placing settings_of_placing(const iso_options *options) {
                          .copies = options->duplicate,
                          .columns = grid->count == 2 ? (int32_t)grid->value[0] : 0,
                          .rows = grid->count == 2 ? (int32_t)grid->value[1] : 0,
-                         .distance = distance + 2 * brim,
-                         .margin = brim + margin_of(options)};
+                         .distance = distance + 2 * around,
+                         .margin = around + margin_of(options)};
 }
 
 iso_clearance settings_of_clearance(const iso_options *options) {

@@ -10,6 +10,9 @@
  * by one. A grid takes them all as one. */
 iso_object_options settings_of_objects(const iso_options *options);
 
+/* mm by which outlines may be printed larger than the model's, on all sides. */
+double settings_of_growth(const iso_options *options);
+
 /* Points into the options. */
 iso_placing settings_of_placing(const iso_options *options);
 
