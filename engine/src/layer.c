@@ -174,8 +174,8 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
         iso_gap_options gap = f->layer->settings.gap;
         gap.like.group = group;
         iso_gap_reach reach = {f->layer->settings.fill_inset, -f->layer->settings.wall.fill_inset};
-        ISO_TRY(iso_gap_fill_left(&f->layer->paths, part, &hand->inside, &reach, &gap,
-                                  hand->planar));
+        ISO_TRY(
+            iso_gap_fill_left(&f->layer->paths, part, &hand->inside, &reach, &gap, hand->planar));
     }
     grouped.margin = f->layer->settings.fill_inset;
     return iso_fill(&f->layer->paths, &hand->inside, &grouped, &hand->arena, hand->planar);
@@ -260,8 +260,8 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
     if (layer->modifiers)
         ISO_TRY(fill_modified(&filling));
     else if (s->has_sparse)
-        ISO_TRY(fill_region(&filling, layer->combined ? &layer->alone : &shell->sparse,
-                            &s->sparse));
+        ISO_TRY(
+            fill_region(&filling, layer->combined ? &layer->alone : &shell->sparse, &s->sparse));
     if (layer->combined)
         ISO_TRY(fill_region(&filling, &layer->together, &s->together));
     if (s->irons > 0)
@@ -285,6 +285,12 @@ iso_status layer_split(iso_layer *layer, iso_hand *hand, const iso_shell_neighbo
     return ISO_OK;
 }
 
+/* Walls run within their layer's outline, but for fuzzy ones; one like that below holds them all.
+ */
+static bool is_upright(const iso_layer *layer, const iso_layer *beneath) {
+    return !layer->settings.fuzzy.on && region_same(&layer->region, &beneath->region);
+}
+
 /* What depends on the layer below, split. */
 static iso_status lie_on(iso_layer *layer, iso_hand *hand, const iso_layer *beneath) {
     const iso_layer_settings *s = &layer->settings;
@@ -297,7 +303,7 @@ static iso_status lie_on(iso_layer *layer, iso_hand *hand, const iso_layer *bene
         ISO_TRY(iso_shell_find_lids(shell, open, s->lid_least, s->lid_anchor, hand->planar));
     ISO_TRY(check(&shell->lid, hand));
     ISO_TRY(check(&shell->solid, hand));
-    if (s->overhang.reach > 0)
+    if (s->overhang.reach > 0 && !is_upright(layer, beneath))
         return iso_walls_find_overhangs(&layer->paths, &beneath->region, &s->overhang,
                                         hand->planar);
     return ISO_OK;
@@ -310,7 +316,8 @@ iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath
     if (beneath)
         ISO_TRY(lie_on(layer, hand, beneath));
     bool shelled = shell->top.count + shell->solid.count + shell->bridge.count + shell->lid.count +
-                   layer->combined || layer->modifiers;
+                       layer->combined ||
+                   layer->modifiers;
     double ready = iso_stage_clock();
     iso_arena_mark mark = iso_arena_get_mark(&hand->arena);
     iso_filling all = {.layer = layer, .hand = hand};

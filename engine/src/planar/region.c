@@ -13,6 +13,13 @@ void iso_region_clear(iso_region *region) {
     region->count = 0;
 }
 
+bool region_same(const iso_region *a, const iso_region *b) {
+    if (a->count != b->count || a->count == 0)
+        return a->count == b->count;
+    return memcmp(a->first, b->first, (size_t)(a->count + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->point, b->point, (size_t)a->first[a->count] * sizeof *a->point) == 0;
+}
+
 /* first and parent share a capacity, counted in contours. */
 iso_status region_reserve(iso_region *region, int64_t contours, int64_t points) {
     if (points > INT32_MAX || contours > INT32_MAX - 1)

@@ -32,13 +32,6 @@ void iso_shell_free(iso_shell *shell) {
     iso_region_free(&shell->spare);
 }
 
-static bool same_region(const iso_region *a, const iso_region *b) {
-    if (a->count != b->count || a->count == 0)
-        return a->count == b->count;
-    return memcmp(a->first, b->first, (size_t)(a->count + 1) * sizeof *a->first) == 0 &&
-           memcmp(a->point, b->point, (size_t)a->first[a->count] * sizeof *a->point) == 0;
-}
-
 static iso_status copy_region(iso_region *out, const iso_region *in) {
     iso_region_clear(out);
     for (int32_t c = 0; c < in->count; c++) {
@@ -60,7 +53,7 @@ int32_t iso_shell_level(int32_t layers) {
 /* Upright walls give the same outline again and again. */
 iso_status iso_shell_widen(iso_region *out, const iso_region *low, const iso_region *high,
                            iso_planar_scratch *scratch) {
-    if (same_region(low, high))
+    if (region_same(low, high))
         return copy_region(out, low);
     return iso_boolean(out, ISO_INTERSECTION, low, high, scratch);
 }
@@ -116,7 +109,7 @@ static iso_status expose(iso_region *out, const iso_region *fill, const iso_shel
 static iso_shell_side without_own(const iso_shell_side *side, const iso_region *own) {
     iso_shell_side rest = {.layers = side->layers, .missing = side->missing};
     for (int32_t i = 0; i < side->count; i++)
-        if (!same_region(side->cover[i], own))
+        if (!region_same(side->cover[i], own))
             rest.cover[rest.count++] = side->cover[i];
     return rest;
 }

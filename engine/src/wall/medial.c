@@ -176,12 +176,15 @@ static int32_t new_node(iso_axis *axis, iso_medial_point at) {
 
 static iso_status build_axis(iso_axis *axis, const iso_triangulation *t, iso_arena *arena) {
     int32_t *chord;
-    int64_t room = 3 * (int64_t)t->triangle_count;
+    int64_t inside = 0;
+    for (int32_t k = 0; k < t->triangle_count; k++)
+        inside += t->inside[k];
+    int64_t room = 5 * inside / 2 + 1; /* a chord is of two triangles */
     ISO_TRY(ISO_PUSH(axis->at, arena, room));
     ISO_TRY(ISO_PUSH(axis->arm, arena, room));
     ISO_TRY(ISO_PUSH(axis->pruned, arena, room));
     ISO_TRY(ISO_PUSH(axis->visited, arena, room));
-    ISO_TRY(ISO_PUSH(chord, arena, room));
+    ISO_TRY(ISO_PUSH(chord, arena, 3 * (int64_t)t->triangle_count));
     for (int32_t d = 0; d < 3 * t->triangle_count; d++) {
         chord[d] = GONE;
         if (t->inside[d / 3] && !t->fence[d])
