@@ -145,6 +145,23 @@ static void test_the_filament_has_its_say_over_retraction(void) {
     CHECK_STATUS(ISO_BAD_CONFIG, read_ini("filament_retract_length = far\n"));
 }
 
+static void test_thin_walls_stay_where_arachne_makes_them(void) {
+    CHECK_OK(read_ini("thin_walls = 0\n"));
+    CHECK(!options.thin_walls);
+    CHECK_OK(read_ini("perimeter_generator = classic\nthin_walls = 0\n"));
+    CHECK(!options.thin_walls);
+    CHECK_EQUAL(0, notes.unknown_count);
+    CHECK_OK(read_ini("perimeter_generator = arachne\nthin_walls = 0\n"));
+    CHECK(options.thin_walls);
+    CHECK(strcmp(foreign_value("perimeter_generator"), "arachne") == 0);
+    static const char fine[] = "[printer:p]\nnozzle_diameter = 0.4\n[print:fine]\nthin_walls = 0\n"
+                               "[print:old]\ninherits = fine\nperimeter_generator = classic\n";
+    CHECK_OK(read_with(":printer:p:print:fine", ".ini", fine));
+    CHECK(options.thin_walls);
+    CHECK_OK(read_with(":print:old", ".ini", fine));
+    CHECK(!options.thin_walls);
+}
+
 static void test_presets_names_are_kept(void) {
     CHECK_OK(read_ini("[presets]\nprint = fine \\ \"1\"\nfilament = PLA \\ \"1\"\n"
                       "[print:fine \\ \"1\"]\nlayer_height = 0.1\n"
@@ -357,6 +374,7 @@ int main(void) {
     RUN(test_words_of_older_versions);
     RUN(test_the_nearest_section_is_told);
     RUN(test_the_filament_has_its_say_over_retraction);
+    RUN(test_thin_walls_stay_where_arachne_makes_them);
     RUN(test_presets_names_are_kept);
     RUN(test_a_word_that_is_replaced_later_is_not_noted);
     RUN(test_of_one_value_per_extruder_the_first_counts);

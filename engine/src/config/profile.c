@@ -22,6 +22,7 @@ typedef struct reader {
     iso_config_notes *notes;
     const char *path;
     iso_ini ini;
+    bool is_arachne; /* its walls are as wide as the part whatever thin_walls says */
 } reader;
 
 /* ---- lines ---- */
@@ -101,6 +102,15 @@ static iso_status apply_value(reader *from, int32_t option, const char *value, i
                            first_value(first, sizeof first, option, value), where);
 }
 
+/* That profiles turn thin_walls off says nothing where perimeter_generator is arachne, which print
+ * profiles mean when they are silent about it; walls of less than two beads would double or go. */
+static bool note_generator(reader *from, const char *key, const char *value) {
+    if (strcmp(key, "perimeter_generator") != 0)
+        return false;
+    from->is_arachne = strcmp(value, "arachne") == 0;
+    return iso_foreign_set(&from->options->foreign, key, value);
+}
+
 /* Words that older versions of PrusaSlicer had as 0 and 1. */
 static const char *todays_word(const char *key, const char *value) {
     static const char *const words[][3] = {{"gcode_label_objects", "disabled", "octoprint"},
@@ -117,7 +127,8 @@ static iso_status apply_line(reader *from, const iso_ini_line *given) {
     const iso_ini_line *line = &today;
     int32_t option = iso_option_find(line->key);
     if (option < 0) {
-        note_foreign(from, line->key, line->value);
+        if (!note_generator(from, line->key, line->value))
+            note_foreign(from, line->key, line->value);
         return ISO_OK;
     }
     bool is_empty = *line->value == 0 && (is_numeric(iso_option_at(option)->kind) ||
@@ -267,6 +278,7 @@ static iso_status apply_preset(reader *from, const char *type, const char *name,
     if (is_list)
         value[n++] = '"';
     value[n] = 0;
+    from->is_arachne = from->is_arachne || strcmp(type, "print") == 0;
     ISO_TRY(apply_section(from, index, 0));
     snprintf(key, sizeof key, "%s_settings_id", type);
     note_foreign(from, key, value);
@@ -344,11 +356,13 @@ iso_status iso_options_read(iso_options *options, const char *path, iso_config_n
     memcpy(file, path, length);
     file[length] = 0;
     iso_options changed = *options;
-    reader from = {&changed, notes, file, {0}};
+    reader from = {&changed, notes, file, {0}, false};
     ISO_TRY(iso_ini_read(&from.ini, file));
     iso_status status = apply_file(&from, choice);
     if (status == ISO_OK)
         status = apply_overrides(&from);
+    if (status == ISO_OK && from.is_arachne)
+        status = iso_options_set(&changed, "thin_walls", "1", file);
     if (status == ISO_OK)
         *options = changed;
     iso_ini_free(&from.ini);
