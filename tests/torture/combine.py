@@ -352,7 +352,10 @@ class Trace:
         at, e, arrived = [0.0, 0.0, 0.0], 0.0, [False] * 3
         retracted = 0.0
         role, layer, top = "", 0, None
-        lowest = math.inf
+        lowest, width, height = math.inf, 0.0, 0.0
+        thread = math.pi / 4 * float(s["nozzle_diameter"]) ** 2
+        flow, bridge = float(s["extrusion_multiplier"]), float(s["bridge_flow_ratio"])
+        even = letter == "E" and flavour in MARLINS
         for count, line in enumerate(text.splitlines(), 1):
             if line.startswith(";"):
                 if line.startswith(";TYPE:"):
@@ -368,6 +371,8 @@ class Trace:
                     top, lowest = z, min(lowest, z)
                     self.tops.append(z)
                     layer += 1
+                elif line.startswith(";HEIGHT:"):
+                    height = float(line[8:])
                 elif line.startswith(";WIDTH:"):
                     width = float(line[7:])
                     if width > self.widest[0]:
@@ -411,6 +416,10 @@ class Trace:
                 bead = delta * area / (moved + 0.003)
                 if bead > self.thickest[0]:
                     self.thickest = (bead, count)
+                most = flow * max(width * height, 1.4 * thread * bridge if "ridge" in role or
+                                  "Overhang" in role else 0)
+                if even and bead > 1.03 * most + 2e-5 * area / (moved + 0.003):
+                    self.say("amount", count, f"{bead:.4f} mm2 of {width} x {height}: {line}")
                 z = at[2] - offset
                 if top is not None and abs(z - top) > 2e-3 and not (
                         vase and z <= top + 2e-3):
@@ -599,6 +608,8 @@ def check_case(given, case):
     name, model, traits, options = model_of(case, table, models)
     base = os.path.join(given.keep, f"{name}-{case}")
     given.base = profiles(given.profiles, case)
+    if given.base:  # start and end are in the words of their firmware
+        options.pop("gcode_flavor", None)
     stl = [model]
     if not isinstance(model, str):
         stl = [base + ".stl"]
