@@ -4,6 +4,7 @@
 
 #include "planar/island.h"
 #include "planar/region.h"
+#include "planar/scratch.h"
 #include "planar/section.h"
 #include "wall/compensation.h"
 #include "wall/fuzzy.h"
@@ -28,6 +29,7 @@ void hand_free(iso_hand *hand) {
     iso_region_free(&hand->part);
     iso_paths_free(&hand->paths);
     modified_free(&hand->modified);
+    repeat_free(&hand->repeat);
 }
 
 iso_status layer_new(iso_layer *layer, int32_t levels) {
@@ -115,7 +117,7 @@ static iso_status add_area(iso_layer *layer, const iso_region *inside, int32_t g
     return ISO_OK;
 }
 
-static iso_status make_walls(iso_layer *layer, iso_hand *hand, int32_t index) {
+static iso_status draw_walls(iso_layer *layer, iso_hand *hand) {
     iso_islands islands;
     ISO_TRY(islands_of(&islands, &layer->region, &hand->arena));
     for (int32_t i = 0; i < islands.count; i++) {
@@ -125,6 +127,22 @@ static iso_status make_walls(iso_layer *layer, iso_hand *hand, int32_t index) {
         ISO_TRY(iso_walls(&layer->paths, &hand->inside, &hand->island, &wall, hand->planar));
         bool nested = layer->region.parent[islands.contour[islands.first[i]]] >= 0;
         ISO_TRY(add_area(layer, &hand->inside, i, nested));
+    }
+    return ISO_OK;
+}
+
+static iso_status make_walls(iso_layer *layer, iso_hand *hand, int32_t index) {
+    const iso_wall_options *wall = &layer->settings.wall;
+    iso_planar_counts *counts = &hand->planar->counts, before = *counts;
+    iso_walled walled = {&layer->paths, &layer->area, &layer->group, &layer->group_capacity, {0}};
+    if (repeat_has(&hand->repeat, &layer->region, wall)) {
+        ISO_TRY(repeat_copy(&walled, &hand->repeat));
+        counts_add(counts, &walled.cost, 1);
+    } else {
+        ISO_TRY(draw_walls(layer, hand));
+        walled.cost = *counts;
+        counts_add(&walled.cost, &before, -1);
+        ISO_TRY(repeat_keep(&hand->repeat, &layer->region, wall, &walled));
     }
     if (layer->settings.fuzzy.on)
         ISO_TRY(

@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include "config/settings.h"
 #include "modifier.h"
+#include "repeat.h"
 
 typedef enum iso_stage {
     ISO_STAGE_READ,
@@ -53,6 +54,7 @@ typedef struct iso_hand {
     iso_region raw, island, inside, part;
     iso_paths paths;
     iso_modified modified;
+    iso_repeat repeat;
 } iso_hand;
 
 iso_status hand_new(iso_hand *hand) ISO_MUST_CHECK;
