@@ -110,11 +110,11 @@ static iso_status gather_first_layers(iso_region *all, iso_job *job) {
     return ISO_OK;
 }
 
-/* Where the objects reach to, on any layer. */
-static iso_status gather_hulls(iso_region *all, iso_job *job) {
+/* Where the objects reach to, on layers that have a skirt. */
+static iso_status gather_feet(iso_region *all, iso_job *job) {
     for (int32_t i = 0; i < job->plate.instances.count; i++) {
         const iso_instance *instance = &job->plate.instances.instance[i];
-        ISO_TRY(add_moved(all, &job->plate.objects.object[instance->object].hull, instance->by));
+        ISO_TRY(add_moved(all, &job->plate.objects.object[instance->object].foot, instance->by));
     }
     return ISO_OK;
 }
@@ -348,7 +348,7 @@ static iso_status look_at_first_layers(iso_job *job) {
     iso_region first = {0}, all = {0};
     iso_status status = gather_first_layers(&first, job);
     if (status == ISO_OK)
-        status = gather_hulls(&all, job);
+        status = gather_feet(&all, job);
     if (status == ISO_OK)
         status =
             surround_make(&job->surround, &first, &all, job->options, job->crew.hand[0].planar);

@@ -201,6 +201,16 @@ static iso_status make_labels(iso_plate *plate) {
     return ISO_OK;
 }
 
+/* No layer is thicker than the nozzle's diameter. */
+static double top_of_skirt(const iso_options *options) {
+    double step = options->layer_height;
+    if (step < options->nozzle_diameter)
+        step = options->nozzle_diameter;
+    return options->draft_shield == ISO_SHIELD_ENABLED
+               ? INFINITY
+               : iso_options_first_height(options) + (options->skirt_height - 1) * step;
+}
+
 iso_status plate_load(iso_plate *plate, iso_report *report, const iso_options *options,
                       const char *const *input, int32_t input_count) {
     ISO_TRY(modifiers_parse(&plate->modifiers, options, input_count));
@@ -209,7 +219,7 @@ iso_status plate_load(iso_plate *plate, iso_report *report, const iso_options *o
     ISO_TRY(check_volume(plate, options));
     if (options->skirts > 0 &&
         (options->skirt_height > 1 || options->draft_shield == ISO_SHIELD_ENABLED))
-        ISO_TRY(iso_objects_find_hulls(&plate->objects));
+        ISO_TRY(iso_objects_find_feet(&plate->objects, top_of_skirt(options)));
     iso_clearance clearance = settings_of_clearance(options);
     if (options->complete_objects)
         ISO_TRY(iso_objects_sequence(&plate->instances, &plate->objects, &clearance));

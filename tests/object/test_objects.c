@@ -149,8 +149,29 @@ static void test_hull(void) {
         CHECK_EQUAL(6, hull.first[1]);
         CHECK_NEAR(2 * (12 + 9) * 1e8, (double)iso_region_double_area(&hull), 0);
     }
+    if (CHECK_OK(iso_meshes_hull_below(&hull, &mesh, 1, -0.5)))
+        CHECK_EQUAL(0, hull.count);
     iso_mesh_translate(&mesh, (iso_vec3){2000, 0, 0});
     CHECK_STATUS(ISO_OUTSIDE, iso_meshes_hull(&hull, &mesh, 1));
+    iso_region_free(&hull);
+    iso_mesh_free(&mesh);
+}
+
+/* A canopy casts no shadow on a skirt below it: a cone standing on its tip, cut at a third. */
+static void test_hull_of_a_foot(void) {
+    static const shape_point corner[] = {{0, 0, 0}, {3, 3, 3}, {-3, 3, 3}, {-3, -3, 3}, {3, -3, 3}};
+    static const int side[][3] = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}};
+    shape s = {0};
+    iso_mesh mesh;
+    iso_region hull = {0};
+    for (int i = 0; i < 6; i++)
+        shape_add(&s, corner[side[i][0]], corner[side[i][1]], corner[side[i][2]]);
+    if (!solid_made(&mesh, &s))
+        return;
+    if (CHECK_OK(iso_meshes_hull_below(&hull, &mesh, 1, mesh.min.z + 1)))
+        CHECK_NEAR(2 * 4 * 1e8, (double)iso_region_double_area(&hull), 0);
+    if (CHECK_OK(iso_meshes_hull_below(&hull, &mesh, 1, mesh.max.z)))
+        CHECK_NEAR(2 * 36 * 1e8, (double)iso_region_double_area(&hull), 0);
     iso_region_free(&hull);
     iso_mesh_free(&mesh);
 }
@@ -217,6 +238,7 @@ int main(void) {
     RUN(test_cut);
     RUN(test_split);
     RUN(test_hull);
+    RUN(test_hull_of_a_foot);
     RUN(test_hull_at_random);
     RUN(test_no_memory);
     return check_verdict();

@@ -52,6 +52,10 @@ ISO_API void iso_meshes_free(iso_mesh *mesh, int32_t count);
 ISO_API iso_status iso_meshes_hull(iso_region *hull, const iso_mesh *mesh,
                                    int32_t count) ISO_MUST_CHECK;
 
+/* The same of what is at z or below it; without contours if nothing is. */
+ISO_API iso_status iso_meshes_hull_below(iso_region *hull, const iso_mesh *mesh, int32_t count,
+                                         double z) ISO_MUST_CHECK;
+
 /* ---- objects ---- */
 
 enum { ISO_OBJECT_NAME_SIZE = 128 };
@@ -63,6 +67,7 @@ typedef struct iso_object {
     iso_vec3 min, max; /* of all of them: min.x = -max.x, min.y = -max.y, about */
     iso_vec2 origin;   /* mm, where x = y = 0 was in the files */
     iso_region hull;   /* seen from above; empty until iso_objects_find_hulls */
+    iso_region foot;   /* of what is low; empty until iso_objects_find_feet */
 } iso_object;
 
 typedef struct iso_objects {
@@ -90,6 +95,9 @@ ISO_API void iso_objects_free(iso_objects *objects);
 
 /* Fill in the hulls that are missing; placing and sequence do it by themselves. */
 ISO_API iso_status iso_objects_find_hulls(iso_objects *objects) ISO_MUST_CHECK;
+
+/* Fill in the hulls of what is at z or below it; that of an object floating above stays empty. */
+ISO_API iso_status iso_objects_find_feet(iso_objects *objects, double z) ISO_MUST_CHECK;
 
 /* ---- places on the bed ---- */
 

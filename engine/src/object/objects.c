@@ -158,9 +158,18 @@ void iso_objects_free(iso_objects *objects) {
     for (int32_t i = 0; i < objects->count; i++) {
         iso_meshes_free(objects->object[i].mesh, objects->object[i].mesh_count);
         iso_region_free(&objects->object[i].hull);
+        iso_region_free(&objects->object[i].foot);
     }
     iso_release(objects->object);
     *objects = (iso_objects){0};
+}
+
+iso_status iso_objects_find_feet(iso_objects *objects, double z) {
+    for (int32_t i = 0; i < objects->count; i++) {
+        iso_object *object = &objects->object[i];
+        ISO_TRY(iso_meshes_hull_below(&object->foot, object->mesh, object->mesh_count, z));
+    }
+    return ISO_OK;
 }
 
 iso_status iso_objects_find_hulls(iso_objects *objects) {
