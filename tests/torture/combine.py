@@ -418,7 +418,7 @@ class Trace:
                     self.thickest = (bead, count)
                 most = flow * max(width * height, 1.4 * thread * bridge if "ridge" in role or
                                   "Overhang" in role else 0)
-                if even and bead > 1.03 * most + 2e-5 * area / (moved + 0.003):
+                if even and bead > 1.06 * most + 2e-5 * area / (moved + 0.003):
                     self.say("amount", count, f"{bead:.4f} mm2 of {width} x {height}: {line}")
                 z = at[2] - offset
                 if top is not None and abs(z - top) > 2e-3 and not (
