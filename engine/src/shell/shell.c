@@ -244,6 +244,18 @@ static iso_status make_whole(iso_shell *shell, const iso_region *fill,
     return cut(&shell->top, &shell->solid, fill, scratch);
 }
 
+/* Is every island of the fill so small that none of its parts would stay sparse? */
+static iso_status is_all_small(bool *small, const iso_region *fill,
+                               const iso_shell_options *options, iso_planar_scratch *scratch) {
+    iso_islands islands;
+    int64_t *area;
+    ISO_TRY(island_areas(&area, &islands, fill, scratch));
+    *small = true;
+    for (int32_t i = 0; i < islands.count && *small; i++)
+        *small = area[i] < options->sparse_least;
+    return ISO_OK;
+}
+
 static iso_status assemble(iso_shell *shell, const iso_region *fill, iso_planar_scratch *scratch) {
     if (shell->top.count == 0 && shell->solid.count == 0 && shell->sparse.count == 0)
         return copy_region(&shell->sparse, fill);
@@ -268,6 +280,11 @@ static iso_status split(iso_shell *shell, const iso_region *fill,
         fill = &shell->rest;
     }
     if (options->whole)
+        return make_whole(shell, fill, scratch);
+    bool small = false;
+    if (options->sparse_least > 0)
+        ISO_TRY(is_all_small(&small, fill, options, scratch));
+    if (small)
         return make_whole(shell, fill, scratch);
     ISO_TRY(assemble(shell, fill, scratch));
     return options->sparse_least > 0 ? fill_small(shell, options, scratch) : ISO_OK;
