@@ -77,7 +77,7 @@ SENSIBLE = {
                     HOME + "\\n{if perimeters > 2}M117 thick{else}M117 thin{endif}"],
     "end_gcode": ["M104 S0\\nM140 S0\\nM107\\nM84", "M107\\nM104 S0\\nM140 S0\\nG1 X0 Y10"],
     "layer_gcode": ["", "; at [layer_num] [layer_z]", "M117 {layer_num+1}"],
-    "before_layer_gcode": ["", "; before [layer_num]", "G92 E0"],
+    "before_layer_gcode": ["", "; before [layer_num]"],
     "start_filament_gcode": ["", "M117 filament"], "end_filament_gcode": ["", "M117 bye"],
     "between_objects_gcode": ["", "M117 next"], "colorprint_heights": ["", "1.5", "0.5,2,100"],
     "events": ["", "2:color", "1:pause;1.01:template", "0.9:M117 here"],
