@@ -23,7 +23,6 @@ typedef struct iso_wall_options {
     iso_path like;      /* object, group and tool of the paths */
 } iso_wall_options;
 
-
 typedef struct iso_gap_options {
     int32_t height;
     int32_t least, most; /* units of width to fill: narrower places stay as they are; wider ones get

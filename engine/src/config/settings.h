@@ -19,14 +19,14 @@ typedef struct iso_layer_settings {
     iso_compensation compensation;
     iso_wall_options wall;
     iso_fuzzy_options fuzzy;
-    iso_gap_options gap;  /* of what the fill leaves open; least 0: stays open */
-    int32_t fill_inset; /* units from the edge of a filled area to the middles of its lines */
+    iso_gap_options gap; /* of what the fill leaves open; least 0: stays open */
+    int32_t fill_inset;  /* units from the edge of a filled area to the middles of its lines */
     iso_shell_options shell;
     int32_t coarse; /* units by which the outlines that shells look at are thinned */
     iso_fill_options top, solid, bridge, lid;
     int32_t bridge_angle_given;    /* else each bridge has its own */
     int32_t lid_least;             /* units; see iso_shell_find_lids; 0: no lids */
-    int32_t lid_anchor; /* units */
+    int32_t lid_anchor;            /* units */
     iso_overhang_options overhang; /* reach 0: none */
     int32_t irons;                 /* tops are passed over again; 2: all solid areas are */
     int32_t ironing_inset;         /* units */

@@ -29,7 +29,8 @@ int32_t hull_of(iso_point *out, iso_point *point, int32_t count) {
         if (kept == 0 || !point_equal(point[i], point[kept - 1]))
             point[kept++] = point[i];
     if (kept < 3) {
-        memcpy(out, point, (size_t)kept * sizeof *out);
+        for (int32_t i = 0; i < kept; i++) /* none at all may have no place in memory */
+            out[i] = point[i];
         return kept;
     }
     int32_t made = add_chain(out, 0, point, kept, 1);
