@@ -24,7 +24,9 @@ static iso_status echo(char *text, size_t size, const void *payload, iso_gcode_t
                                        "PAUSING", "FROM TEMPLATE"};
     const char *only = payload;
     *text = '\0';
-    if (!only || strstr(only, name[kind]))
+    if (kind == ISO_TEXT_EVENT)
+        snprintf(text, size, "%s", place->event);
+    else if (!only || strstr(only, name[kind]))
         snprintf(text, size, ";%s %d %g %g", name[kind], place->layer, place->z, place->max_z);
     return ISO_OK;
 }

@@ -139,7 +139,7 @@ static void events(const change *c) {
     same_print(c);
     CHECK_EQUAL(1, layer_with(c->b, ";COLOR_CHANGE,T0\nM600\n"));
     CHECK_EQUAL(3, layer_with(c->b, ";PAUSE_PRINT\nM117 magnet\nM400\n"));
-    CHECK_EQUAL(4, layer_with(c->b, ";CUSTOM_GCODE\nM300 S440\n"));
+    CHECK_EQUAL(4, layer_with(c->b, ";CUSTOM_GCODE\nM300 S444\n"));
 }
 
 static void color_change_gcode(const change *c) {
@@ -190,7 +190,7 @@ const option_row option_rows_gcode[] = {
      start_filament_gcode},
     {make_block, "end_filament_gcode", "; filament done", "", end_filament_gcode},
     {make_block, "colorprint_heights", "0.7,1.9", "", colorprint_heights},
-    {make_block, "events", "0.4:color\\n1.25:pause magnet\\n1.26:M300 S440",
+    {make_block, "events", "0.4:color\\n1.25:pause magnet\\n1.26:M300 S{440+layer_num}",
      "pause_print_gcode = M400", events},
     {make_block, "color_change_gcode", "M0 ; change to red", "colorprint_heights = 0.7",
      color_change_gcode},

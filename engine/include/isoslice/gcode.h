@@ -39,14 +39,16 @@ typedef enum iso_gcode_text_kind {
     ISO_TEXT_COLOR_CHANGE,
     ISO_TEXT_PAUSE,
     ISO_TEXT_TEMPLATE,
+    ISO_TEXT_EVENT, /* one given in `events` itself: the place has it */
     ISO_TEXT_KIND_COUNT
 } iso_gcode_text_kind;
 
 typedef struct iso_gcode_place {
-    int32_t layer;  /* from 0; -1 before the first one */
-    double z;       /* mm: the layer's top, z_offset left out */
-    double max_z;   /* mm: the highest top so far */
-    int32_t object; /* that is coming, or -1 */
+    int32_t layer;     /* from 0; -1 before the first one */
+    double z;          /* mm: the layer's top, z_offset left out */
+    double max_z;      /* mm: the highest top so far */
+    int32_t object;    /* that is coming, or -1 */
+    const char *event; /* of ISO_TEXT_EVENT: the text as it was given */
 } iso_gcode_place;
 
 /* Write the text of that kind into text[size], terminated; "" for none. A failure ends the job. */

@@ -100,6 +100,7 @@ static const struct {
     TEXT(ISO_TEXT_COLOR_CHANGE, color_change_gcode, true),
     TEXT(ISO_TEXT_PAUSE, pause_print_gcode, true),
     TEXT(ISO_TEXT_TEMPLATE, template_custom_gcode, true),
+    TEXT(ISO_TEXT_EVENT, events, true),
 #undef TEXT
 };
 
@@ -115,7 +116,7 @@ iso_status texts_expand(char *text, size_t size, const iso_texts *texts, const c
 iso_status texts_write(char *text, size_t size, const void *payload, iso_gcode_text_kind kind,
                        const iso_gcode_place *place) {
     const iso_texts *texts = payload;
-    const char *from = text_of(texts, (int)kind);
+    const char *from = kind == ISO_TEXT_EVENT ? place->event : text_of(texts, (int)kind);
     if (*from == 0 && size > 0) {
         *text = 0;
         return ISO_OK;

@@ -37,7 +37,7 @@ static iso_event event_of(double z, const char *action) {
         return (iso_event){z, ISO_TEXT_TEMPLATE, NULL};
     if ((rest = after_word(action, "pause")))
         return (iso_event){z, ISO_TEXT_PAUSE, *rest ? rest : NULL};
-    return (iso_event){z, ISO_TEXT_KIND_COUNT, action};
+    return (iso_event){z, ISO_TEXT_EVENT, action};
 }
 
 static void trim(char **from, char *end) {

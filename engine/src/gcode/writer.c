@@ -136,8 +136,10 @@ static iso_status put_event(iso_gcode_writer *w, const iso_event *event) {
     put_line(w, event->kind == ISO_TEXT_PAUSE          ? ";PAUSE_PRINT"
                 : event->kind == ISO_TEXT_COLOR_CHANGE ? ";COLOR_CHANGE,T0"
                                                        : ";CUSTOM_GCODE");
-    if (event->kind == ISO_TEXT_KIND_COUNT)
-        return put_user_text(w, event->text);
+    if (event->kind == ISO_TEXT_EVENT) {
+        w->place.event = event->text;
+        return w->options.text ? put_text(w, ISO_TEXT_EVENT) : put_user_text(w, event->text);
+    }
     if (event->kind == ISO_TEXT_PAUSE && event->text) {
         iso_lines_accept(&w->lines, ISO_PUT(iso_lines_reserve(&w->lines), "M117 "));
         ISO_TRY(put_user_text(w, event->text));
