@@ -164,8 +164,7 @@ static iso_status order_step(iso_job *job, const iso_step *step) {
     double begun = iso_stage_clock();
     iso_paths_clear(&job->ordered);
     const iso_paths *around;
-    ISO_TRY(
-        surround_layer(&around, &job->surround, job->steps, job->options, iso_mm(step->height)));
+    ISO_TRY(surround_step(&around, &job->surround, step->z, step->height, job->options));
     if (around)
         ISO_TRY(order_paths(job, around, (iso_point){0, 0}, job->plate.instances.count));
     for (int32_t k = 0; k < step->count; k++) {
@@ -189,8 +188,10 @@ static iso_status order_step(iso_job *job, const iso_step *step) {
  * most, on upright walls none. */
 static iso_status spiral_step(iso_job *job, const iso_step *step, int32_t index, iso_point from) {
     bool flat = !job->spirals;
-    if (!job->options->spiral_vase || index < job->options->bottom_solid_layers || index == 0)
+    if (!job->options->spiral_vase || index < job->options->bottom_solid_layers || index == 0) {
+        job->spirals = false; /* the object before may have ended as one */
         return ISO_OK;
+    }
     ISO_TRY(path_spiral(&job->spirals, &job->ordered, flat ? NULL : &from, step->height, flat));
     return ISO_OK;
 }

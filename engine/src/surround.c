@@ -100,14 +100,19 @@ static iso_status copy_skirt(iso_surround *surround) {
     return iso_paths_append(&surround->higher, &skirt, (iso_point){0, 0}, -1);
 }
 
-iso_status surround_layer(const iso_paths **paths, iso_surround *surround, int32_t index,
-                          const iso_options *options, double height) {
+iso_status surround_step(const iso_paths **paths, iso_surround *surround, int32_t z, int32_t height,
+                         const iso_options *options) {
+    int32_t missing = z - surround->top, index = surround->drawn;
     *paths = NULL;
+    if (2 * (int64_t)missing < height)
+        return ISO_OK;
+    surround->drawn++;
+    surround->top = z;
     if (index == 0 && surround->paths.count > 0)
         *paths = &surround->paths;
     if (index == 0 || index >= surround->layers || surround->skirt_paths == 0)
         return ISO_OK;
-    iso_bead bead = bead_of(options, false, height);
+    iso_bead bead = bead_of(options, false, iso_mm(missing));
     if (surround->higher.count == 0)
         ISO_TRY(copy_skirt(surround));
     for (int32_t v = 0; v < surround->higher.vertex_count; v++) {

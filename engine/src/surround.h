@@ -11,6 +11,7 @@ typedef struct iso_surround {
     int32_t skirt_paths; /* how many of them are the skirt's, which goes up further */
     int32_t layers;      /* that have the skirt */
     iso_paths higher;    /* the skirt of a layer above */
+    int32_t drawn, top;  /* layers of it so far, and how high they reach, in units */
 } iso_surround;
 
 /* `first` is what the first layer covers, `all` what all layers do; need not be clean. */
@@ -18,8 +19,11 @@ iso_status surround_make(iso_surround *surround, const iso_region *first, const 
                          const iso_options *options, iso_planar_scratch *scratch) ISO_MUST_CHECK;
 void surround_free(iso_surround *surround);
 
-/* The paths around a layer; NULL if there are none. `height` in mm. */
-iso_status surround_layer(const iso_paths **paths, iso_surround *surround, int32_t index,
-                          const iso_options *options, double height) ISO_MUST_CHECK;
+/* The paths that are due at a step whose top is at `z`, `height` thick, both in units; NULL if
+ * there are none. Steps of several objects may be nearer to each other than they are thick, or
+ * begin at the bed again: what is around all of them grows by what is missing up to z, never twice.
+ */
+iso_status surround_step(const iso_paths **paths, iso_surround *surround, int32_t z, int32_t height,
+                         const iso_options *options) ISO_MUST_CHECK;
 
 #endif

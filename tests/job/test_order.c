@@ -113,11 +113,36 @@ static void test_travel_is_short(void) {
     shape_free(&s);
 }
 
+/* A draft shield around objects that are printed one after the other is drawn once, as high as the
+ * highest; the next object doesn't begin it again at the bed. */
+static void test_shield_is_drawn_once(void) {
+    shape s = {0};
+    print p;
+    double highest = 0;
+    int32_t drawn = 0;
+    shape_box(&s, 0, 0, 0, 8, 8, 3);
+    print_shape(&p, &s,
+                "duplicate = 2\ncomplete_objects = 1\ndraft_shield = enabled\n"
+                "skirts = 1\nextruder_clearance_height = 50");
+    CHECK_OK(p.status);
+    CHECK_EQUAL(20, p.level_count);
+    for (int32_t i = 0; i < p.level_count; i++)
+        if (print_length(&p, ISO_ROLE_SKIRT, i) > 0) {
+            CHECK(p.level[i].z > highest);
+            highest = p.level[i].z;
+            drawn++;
+        }
+    CHECK_EQUAL(10, drawn);
+    print_free(&p);
+    shape_free(&s);
+}
+
 int main(void) {
     RUN(test_parts_one_by_one);
     RUN(test_walls_in_order);
     RUN(test_walls_close);
     RUN(test_travel_is_short);
+    RUN(test_shield_is_drawn_once);
     CHECK(print_folder_remove());
     return check_verdict();
 }
