@@ -22,7 +22,10 @@ typedef enum fio_status {
     FIO_USAGE = 2,       /* a call or a command line that makes no sense */
     FIO_UNREADABLE = 3,  /* a file that can't be read */
     FIO_NOT_WRITTEN = 7, /* output that could not be written */
-    FIO_FAULTY = 8,      /* the printer found faults in what it was told to do */
+    FIO_FAULTY = 8,      /* the printer found faults in what it was told to do, or halted */
+    FIO_NO_PRINTER = 9,  /* no such port, it may not be opened, or nothing answers there */
+    FIO_LINK_LOST = 10,  /* the printer went away, reset or fell silent in the middle of the job */
+    FIO_CANCELLED = 11,  /* stopped by its user */
     FIO_REJECTED = 64, /* a line the printer did not execute: it asked for it again, or is halted */
     FIO_NO_MEMORY = 69, /* the allocator said no */
     FIO_BUG = 70        /* the impossible happened: a defect of this library */

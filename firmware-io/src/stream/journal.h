@@ -1,0 +1,34 @@
+/* How far a job came, on disk: survives a killed host.
+ *
+ * A text file to which records are appended, each with a checksum and synced; the last whole one
+ * counts. The first names the job: path, size, fingerprint. A finished job's journal is removed. */
+#ifndef FIO_STREAM_JOURNAL_H
+#define FIO_STREAM_JOURNAL_H
+
+#include <stdint.h>
+
+#include <isoprint/status.h>
+
+#include "stream/streamer.h"
+
+typedef struct fio_journal fio_journal;
+
+typedef struct fio_journal_job {
+    char path[1024]; /* of the G-code, absolute; "-" for standard input */
+    char port[128];
+    int64_t size;
+    uint64_t fingerprint;
+} fio_journal_job;
+
+/* Begin anew, in place of a journal that is there. */
+fio_status fio_journal_create(fio_journal **journal, const char *path,
+                              const fio_journal_job *job) FIO_MUST_CHECK;
+fio_status fio_journal_add(fio_journal *journal, const fio_stream_resume *resume) FIO_MUST_CHECK;
+/* `done`: the job was printed whole; the file is removed. */
+void fio_journal_close(fio_journal *journal, bool done);
+
+/* FIO_UNREADABLE if it is none, or has no whole record. */
+fio_status fio_journal_read(const char *path, fio_journal_job *job,
+                            fio_stream_resume *resume) FIO_MUST_CHECK;
+
+#endif
