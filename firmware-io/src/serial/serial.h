@@ -38,19 +38,25 @@ enum { FIO_USB_INTERFACES = 16 };
 
 typedef struct fio_usb_device {
     uint16_t vendor, product, release; /* bcdDevice */
+    uint16_t version;                  /* bcdUSB */
     uint8_t class_code;
-    bool high_speed;
+    uint8_t control_packet; /* bytes a packet of endpoint 0 carries */
+    bool high_speed;        /* as the size of its bulk packets tells */
     int interface_count;
     fio_usb_interface interfaces[FIO_USB_INTERFACES]; /* each alternate setting counts */
 } fio_usb_device;
 
-/* Read raw descriptors, as sysfs keeps them: device, then configuration. False for damaged ones;
- * never reads beyond `size`. */
+/* Read raw descriptors, as sysfs keeps them: device, then configuration, the first of which counts.
+ * Interfaces and endpoints there is no room for are left out. False for damaged ones, and *device
+ * is untouched; never reads beyond `size`. */
 bool fio_usb_device_read(fio_usb_device *device, const uint8_t *bytes, size_t size);
 
 typedef struct fio_serial_driver fio_serial_driver;
 
-/* An opened bridge. Plain data: nothing to free. */
+/* A rate may be off by so much; what is further off is refused, and never tried. */
+enum { FIO_SERIAL_RATE_ERROR = 3 /* % */ };
+
+/* An opened bridge. Plain data: nothing to free. match() fills all but `control`. */
 typedef struct fio_serial {
     const fio_serial_driver *driver;
     fio_control control;
@@ -58,8 +64,11 @@ typedef struct fio_serial {
         interface_count; /* to claim, in this order; to be released the other way: data first */
     uint8_t in, out;     /* endpoints */
     uint16_t in_packet, out_packet; /* bytes */
-    int chip;                       /* a driver's own: which variant it found */
-    int64_t rate;
+    uint16_t in_transfer; /* most bytes to ask for at once: whole packets, and only one where the
+                           * chip does not end a transfer of full packets by an empty one */
+    int chip;             /* a driver's own: which variant it found */
+    int64_t rate;         /* as asked for */
+    int64_t line_errors;  /* bytes that the bridge itself saw arrive damaged, or lost */
     bool dtr, rts;
     uint8_t state[16]; /* a driver's own */
 } fio_serial;
@@ -68,14 +77,16 @@ struct fio_serial_driver {
     const char *name; /* "cdc-acm" */
     bool (*match)(fio_serial *serial,
                   const fio_usb_device *device); /* fills endpoints and interfaces */
+    /* 8 data bits, no parity, no flow control. Without raise_lines DTR and RTS stay as they are.
+     * FIO_NO_PRINTER if the bridge refuses what it must be able to do. */
     fio_status (*open)(fio_serial *serial, int64_t rate, bool raise_lines);
     fio_status (*set_rate)(fio_serial *serial,
                            int64_t rate); /* FIO_USAGE: it can't, the message says the nearest */
     fio_status (*set_lines)(fio_serial *serial, bool dtr, bool rts);
-    fio_status (*close)(fio_serial *serial);
+    fio_status (*close)(fio_serial *serial); /* lowers the lines again that it raised */
     /* Take what is no data out of a transfer's bytes, in place: whole packets of in_packet bytes,
      * the last may be shorter. Returns the bytes left. NULL: nothing is wrapped. */
-    size_t (*unwrap)(const fio_serial *serial, uint8_t *bytes, size_t size);
+    size_t (*unwrap)(fio_serial *serial, uint8_t *bytes, size_t size);
     bool wants_empty_packet; /* after an OUT transfer of whole packets */
 };
 
