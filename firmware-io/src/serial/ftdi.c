@@ -28,7 +28,7 @@ enum {
 typedef enum variant { CHIP_A, CHIP_B, CHIP_C, CHIP_H } variant;
 
 /* By the release: 0200 A, 0400 B, 0500 2232C/D, 0600 R, 0700 to 0900 H, 1000 X, later ones H. */
-static chip chip_of(uint16_t release) {
+static variant chip_of(uint16_t release) {
     if (release < 0x0300)
         return CHIP_A;
     if (release == 0x0500 || release == 0x1000)
