@@ -84,6 +84,11 @@ FIO_API void fio_machine_advance(fio_machine *machine, double now);
  * without the host. Never before the last time passed in. */
 FIO_API double fio_machine_next(const fio_machine *machine);
 
+/* Whether it works at what the host sent: bytes under way either way, lines not answered, a command
+ * that takes long, moves not made. False while only time of itself makes it speak (reports, wait).
+ */
+FIO_API bool fio_machine_working(const fio_machine *machine);
+
 /* False after a script pulled the plug; the printer itself lives on. plug() puts it back. */
 FIO_API bool fio_machine_plugged(const fio_machine *machine);
 FIO_API void fio_machine_plug(fio_machine *machine, double now);
