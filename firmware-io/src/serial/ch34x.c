@@ -91,24 +91,19 @@ static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
 }
 
 /* A clone that stalls when it is asked for the break register lacks other things too. */
-static fio_status find_variant(fio_serial *serial) {
-    uint8_t answer[2] = {0};
-    bool answered = false;
-    fio_status status = fio_serial_ask(serial, (fio_request){FROM_DEVICE, READ_VERSION, 0, 0, 2},
-                                       answer, &answered);
-    if (status != FIO_OK)
-        return status;
-    serial->state[VERSION] = answered ? answer[0] : LINE_CONTROL_FROM;
-    status = fio_serial_ask(serial, (fio_request){FROM_DEVICE, READ_REGISTER, BREAK_REGISTER, 0, 2},
-                            answer, &answered);
-    serial->chip = answered ? 0 : LIMITED;
-    return status;
-}
-
 static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
-    fio_status status = find_variant(serial);
+    uint8_t bytes[2] = {0};
+    bool answered = false;
+    fio_status status =
+        fio_serial_ask(serial, (fio_request){FROM_DEVICE, READ_VERSION, 0, 0, 2}, bytes, &answered);
+    serial->state[VERSION] = answered ? bytes[0] : LINE_CONTROL_FROM;
     if (status == FIO_OK)
         status = fio_serial_send(serial, (fio_request){TO_DEVICE, INITIALISE, 0, 0, 0}, NULL);
+    if (status == FIO_OK)
+        status =
+            fio_serial_ask(serial, (fio_request){FROM_DEVICE, READ_REGISTER, BREAK_REGISTER, 0, 2},
+                           bytes, &answered);
+    serial->chip = answered ? 0 : LIMITED;
     if (status == FIO_OK)
         status = set_rate(serial, rate);
     return status == FIO_OK && raise_lines ? set_lines(serial, true, true) : status;

@@ -107,7 +107,7 @@ static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
 static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
     uint16_t channel = serial->state[CHANNEL];
     fio_status status = set(serial, RESET, 0, channel);
-    if (status == FIO_OK)
+    if (status == FIO_OK && serial->chip != CHIP_A) /* which has no such timer */
         status = set(serial, SET_LATENCY, LATENCY, channel);
     if (status == FIO_OK)
         status = set(serial, SET_DATA, EIGHT_BITS, channel);
