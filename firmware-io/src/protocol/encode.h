@@ -1,5 +1,9 @@
 /* Commands as they go over the wire: numbered, with a checksum, and so that no single flipped bit
- * can make two of them pass as one. */
+ * makes a firmware execute anything else than what was meant.
+ *
+ * Written for how Marlin (and what descends from Sprinter like it) reads: a line ends with LF or
+ * CR, `;` starts a comment, a backslash is dropped and the byte behind it taken as it is, a
+ * backspace takes the byte before it away, and the checksum is behind the last '*'. */
 #ifndef FIO_PROTOCOL_ENCODE_H
 #define FIO_PROTOCOL_ENCODE_H
 
@@ -12,27 +16,25 @@
 enum { FIO_WIRE_LINE_MOST = 255 }; /* bytes of a line on the wire, its end included */
 
 /* Write "N<number> <command>*<checksum>\n" to `wire` (FIO_WIRE_LINE_MOST + 1 bytes, ends with a 0).
- * `command` has no comment, no end, no N. Returns the length, 0 if the line would be longer than
- * `most` bytes without its end (blanks between words are squeezed out first if that helps; the
- * texts of M117, M118 and the like are cut instead).
+ * `command` has no comment, no end, no N; `number` >= 0. Returns the length, 0 if the line would be
+ * longer than `most` bytes without its end (blanks between words are squeezed out first if that
+ * helps; the texts of M117, M118, M0 and M1 are cut instead).
  *
- * Where the end of a line is damaged, the firmware sees two lines as one: "N5 a*33?N6 b*44". That
- * passes as line 5 if 33 ^ '*' ^ '3' ^ '3' ^ '?' happens to be 0. A blank before the '*' changes
- * the sum; the encoder puts one there where any one flipped bit of the line feed would do harm. */
+ * A byte that is not the line's end can only be damaged so that the checksum tells. Where the end
+ * is damaged, the firmware sees two lines as one, "N5 a*33?N6 b*44", and takes it for line 5 if
+ * 33 ^ '*' ^ '3' ^ '3' ^ '?' happens to be 0: a blank before the '*' or a zero before the number
+ * changes the sum, and is put there where any one flipped bit of the end would do harm. In texts
+ * that are only shown, what a bit could turn into the start of a command is written a little
+ * differently: "J G28" as "j G28". See encode.c for the proof, and for what remains. */
 size_t fio_encode_line(char *wire, int64_t number, const char *command, size_t length, size_t most);
+
+/* A firmware with an emergency parser obeys M108, M112, M410 and M876 in whatever it receives, with
+ * no look at the checksum: one bit makes M400 an M410 that throws moves away. "M0400" is the same
+ * command, but no single bit makes an emergency of it. Writes the command so if that is needed,
+ * else as it is. `text` has room for length + 2 bytes and ends with a 0; returns its length. */
+size_t fio_encode_disguised(char *text, const char *command, size_t length);
 
 /* XOR of the bytes. */
 unsigned fio_checksum(const char *bytes, size_t size);
-
-/* MeatPack packs a line's commonest 15 characters into half a byte each. `packed` has room for
- * 2 * size + 8 bytes; returns the bytes written. The stream is one: `packer` keeps the state. */
-typedef struct fio_meatpack {
-    bool on, no_spaces;
-} fio_meatpack;
-
-size_t fio_meatpack_begin(fio_meatpack *packer, bool no_spaces, unsigned char *packed);
-size_t fio_meatpack_line(fio_meatpack *packer, const char *line, size_t size,
-                         unsigned char *packed);
-size_t fio_meatpack_end(fio_meatpack *packer, unsigned char *packed);
 
 #endif
