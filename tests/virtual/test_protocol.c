@@ -68,7 +68,7 @@ static void test_checksums(void) {
     expect(printer, "G1 X12*7", FIO_OK, "ok\n");                    /* no N: cut off, not checked */
     expect(printer, rig_numbered(43, "G1 X14 "), FIO_OK, "ok\n");
     expect(printer, "N44 G1 X15*", FIO_REJECTED,
-           "Error:No Checksum with line number, Last Line: 43\nResend: 44\nok\n");
+           "Error:checksum mismatch, Last Line: 43\nResend: 44\nok\n");
     expect(printer, rig_numbered(44, ""), FIO_OK, "ok\n");
     CHECK_NEAR(14, rig_state(printer).position[0], 0);
     CHECK_EQUAL(5, rig_statistics(printer)->rejected_lines);

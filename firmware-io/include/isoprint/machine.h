@@ -66,12 +66,22 @@ FIO_API fio_status fio_machine_create(fio_machine **machine,
                                       const fio_machine_options *options) FIO_MUST_CHECK;
 FIO_API void fio_machine_free(fio_machine *machine); /* NULL is fine */
 
-/* Bytes from the host; returns how many were taken. Over a wire that is all of them, lost or not.
- */
+/* Bytes from the host; returns how many were taken: as many as the line has room for. A wire holds
+ * FIO_MACHINE_LINE_BYTES that have not left yet and carries all of them, lost at the far end or
+ * not; native USB holds FIO_MACHINE_PACKET_BYTES until the receive buffer has room. */
+#define FIO_MACHINE_LINE_BYTES 512
+#define FIO_MACHINE_PACKET_BYTES 64
 FIO_API size_t fio_machine_write(fio_machine *machine, double now, const void *bytes, size_t size);
+FIO_API size_t fio_machine_room(const fio_machine *machine); /* what write() would take now */
+
+/* Bytes taken that have not arrived yet; discard() makes them never arrive and returns how many of
+ * them there were. */
+FIO_API size_t fio_machine_pending(const fio_machine *machine);
+FIO_API size_t fio_machine_discard(fio_machine *machine, double now);
 
 /* Bytes for the host that have arrived by `now`. */
 FIO_API size_t fio_machine_read(fio_machine *machine, double now, void *bytes, size_t capacity);
+FIO_API bool fio_machine_readable(const fio_machine *machine); /* read() would give some */
 
 /* The modem lines, and the rate the host has set: a wrong one turns bytes to rubbish, both ways. */
 FIO_API void fio_machine_set_lines(fio_machine *machine, double now, bool dtr, bool rts);

@@ -159,6 +159,7 @@ typedef struct fio_executed {
     double position[4]; /* machine x, y, z and logical e where the line leaves them */
     const char *text;   /* the command: no comment, N or checksum; ends with a 0 */
     size_t length;      /* of text */
+    bool known;         /* false: the firmware does not know this command, and did nothing */
 } fio_executed;
 
 typedef struct fio_execution_log {

@@ -9,11 +9,7 @@
 #define MOST_CHORDS 100000  /* of one command: more is no arc of a print */
 #define LEAST_ANGLE 5e-7    /* rad: closer ends are a whole circle, as in grbl */
 
-typedef struct arc {
-    double centre[2], radius, growth; /* radius + growth · fraction at a fraction of the way */
-    double start_angle, angle;        /* rad; positive is counter-clockwise */
-    int chords;
-} arc;
+typedef fio_arc arc;
 
 /* The centre from R: left of the chord for the shorter counter-clockwise arc. */
 static bool centre_from_radius(double centre[2], const double start[2], const double end[2],
@@ -80,15 +76,33 @@ void fio_printer_arc(fio_virtual_printer *printer, const fio_line *line, bool cl
         return;
     }
     printer->statistics.arcs++;
-    double feedrate = fio_printer_feedrate(printer);
-    for (int i = 1; i < shape.chords; i++) {
-        double fraction = (double)i / shape.chords;
-        double angle = shape.start_angle + shape.angle * fraction;
-        double radius = shape.radius + shape.growth * fraction;
-        double point[3] = {shape.centre[0] + radius * cos(angle),
-                           shape.centre[1] + radius * sin(angle),
-                           start[2] + (target[2] - start[2]) * fraction};
-        fio_printer_move(printer, point, extrusion / shape.chords, feedrate);
+    shape.start_z = start[2];
+    for (int i = 0; i < 3; i++)
+        shape.end[i] = target[i];
+    shape.extrusion = extrusion / shape.chords;
+    shape.feedrate = fio_printer_feedrate(printer);
+    shape.next = 1;
+    printer->arc = shape;
+    fio_printer_next_chord(printer);
+    while (!printer->live && fio_printer_next_chord(printer))
+        ;
+}
+
+bool fio_printer_next_chord(fio_virtual_printer *printer) {
+    arc *shape = &printer->arc;
+    if (shape->next > shape->chords)
+        return false;
+    int i = shape->next++;
+    if (i == shape->chords) {
+        fio_printer_move(printer, shape->end, shape->extrusion, shape->feedrate);
+        return true;
     }
-    fio_printer_move(printer, target, extrusion / shape.chords, feedrate);
+    double fraction = (double)i / shape->chords;
+    double angle = shape->start_angle + shape->angle * fraction;
+    double radius = shape->radius + shape->growth * fraction;
+    double point[3] = {shape->centre[0] + radius * cos(angle),
+                       shape->centre[1] + radius * sin(angle),
+                       shape->start_z + (shape->end[2] - shape->start_z) * fraction};
+    fio_printer_move(printer, point, shape->extrusion, shape->feedrate);
+    return true;
 }

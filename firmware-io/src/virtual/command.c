@@ -4,7 +4,8 @@
 
 #include "virtual/printer.h"
 
-#define LONGEST_DWELL 1e6 /* s: no print waits for more than eleven days */
+#define LEVELLING_SECONDS 30 /* of a machine: nine points and the way between them */
+#define LONGEST_DWELL 1e6    /* s: no print waits for more than eleven days */
 
 static void move(fio_virtual_printer *printer, const fio_line *line) {
     fio_statistics *statistics = &printer->statistics;
@@ -30,6 +31,17 @@ static void dwell(fio_virtual_printer *printer, const fio_line *line) {
     if (fio_line_has(line, 'S'))
         seconds = fio_line_value(line, 'S');
     fio_printer_wait(printer, seconds < LONGEST_DWELL ? seconds : LONGEST_DWELL, FIO_DWELLING);
+}
+
+/* M0 and M1 wait for a time if they have one, else for M108; M600 always for M108. */
+static void wait_for_user(fio_virtual_printer *printer, const fio_line *line) {
+    double seconds = 0;
+    if (line->code < 2 && fio_line_has(line, 'P'))
+        seconds = fio_line_value(line, 'P') / 1000;
+    if (line->code < 2 && fio_line_has(line, 'S'))
+        seconds = fio_line_value(line, 'S');
+    fio_printer_wait(printer, seconds > 0 ? seconds : INFINITY, FIO_DWELLING);
+    printer->wait_user = true;
 }
 
 /* G10 and G11, with the lengths of M207. */
@@ -59,6 +71,8 @@ static void level_bed(fio_virtual_printer *printer) {
     fio_printer_drain(printer);
     if (!printer->homed[0] || !printer->homed[1] || !printer->homed[2])
         fio_printer_event(printer, FIO_FAULT_NOT_HOMED, "bed levelling before homing (G28)");
+    if (printer->live)
+        fio_printer_wait(printer, LEVELLING_SECONDS, FIO_HOMING);
 }
 
 static void set_position(fio_virtual_printer *printer, const fio_line *line) {
@@ -130,12 +144,16 @@ static void heat(fio_virtual_printer *printer, const fio_line *line, bool bed, b
     if (!heating && !cooling)
         return;
     double seconds = fio_heater_wait(heater, printer->clock);
-    if (isinf(seconds)) {
+    if (isinf(seconds) && !printer->live) {
         fio_printer_event_value(printer, FIO_FAULT_TEMPERATURE, "waiting for ever for ",
                                 heater->target, " C");
         return;
     }
     fio_printer_wait(printer, seconds, FIO_HEATING);
+    if (printer->live) {
+        printer->wait_heater = heater;
+        return;
+    }
     fio_heater_set(heater, printer->clock, heater->target);
     if (heating)
         heater->temperature = heater->target;
@@ -149,7 +167,7 @@ static void fan(fio_virtual_printer *printer, const fio_line *line, bool on) {
     printer->fan = !on ? 0 : speed < 0 ? 0 : speed > 255 ? 255 : speed;
 }
 
-static void halt(fio_virtual_printer *printer) {
+void fio_printer_halt(fio_virtual_printer *printer, const char *why) {
     fio_printer_abandon(printer);
     note_heat(printer);
     for (int i = 0; i < FIO_TOOLS_MOST; i++)
@@ -157,7 +175,11 @@ static void halt(fio_virtual_printer *printer) {
     fio_heater_set(&printer->bed, printer->clock, 0);
     printer->fan = 0;
     printer->halted = true;
-    fio_printer_event(printer, FIO_FAULT_HALTED, "emergency stop (M112)");
+    fio_printer_event(printer, FIO_FAULT_HALTED, why);
+}
+
+static void halt(fio_virtual_printer *printer) {
+    fio_printer_halt(printer, "emergency stop (M112)");
     fio_printer_say(printer, "echo:M112 Shutdown");
     fio_printer_say(printer, "Error:Printer halted. kill() called!");
     fio_printer_say(printer, "//action:poweroff");
@@ -182,7 +204,7 @@ static void progress(fio_virtual_printer *printer, const fio_line *line) {
         printer->minutes_left = (int)minutes;
 }
 
-static void say_position(fio_virtual_printer *printer) {
+void fio_printer_say_position(fio_virtual_printer *printer) {
     static const double steps[3] = {80, 80, 400};
     static const char *const logical[3] = {"X:", " Y:", " Z:"};
     static const char *const counts[3] = {" Count X:", " Y:", " Z:"};
@@ -208,14 +230,24 @@ static void say_heater(fio_text *text, const char *name, const fio_heater *heate
     fio_text_number(text, heater->target, 2);
 }
 
+void fio_printer_temperatures(const fio_virtual_printer *printer, fio_text *text) {
+    say_heater(text, " T:", &printer->nozzle[printer->tool], printer->clock);
+    say_heater(text, " B:", &printer->bed, printer->clock);
+    for (int i = 0; printer->options.tools > 1 && i < printer->options.tools; i++) {
+        const char name[] = {' ', 'T', (char)('0' + i), ':', 0};
+        say_heater(text, name, &printer->nozzle[i], printer->clock);
+    }
+    fio_text_string(text, " @:0 B@:0");
+}
+
 /* Marlin's M105 has its ok in front. */
 static void say_temperatures(fio_virtual_printer *printer) {
-    char bytes[160];
+    char bytes[320];
     fio_text text = fio_text_in(bytes, sizeof bytes);
-    say_heater(&text, "ok T:", &printer->nozzle[printer->tool], printer->clock);
-    say_heater(&text, " B:", &printer->bed, printer->clock);
-    fio_text_string(&text, " @:0 B@:0");
+    fio_text_string(&text, "ok");
+    fio_printer_temperatures(printer, &text);
     fio_printer_say(printer, bytes);
+    printer->answered = true;
 }
 
 static void say_firmware(fio_virtual_printer *printer) {
@@ -293,7 +325,7 @@ static bool execute_m(fio_virtual_printer *printer, const fio_line *line) {
         halt(printer);
         return true;
     case 114:
-        say_position(printer);
+        fio_printer_say_position(printer);
         return true;
     case 115:
         say_firmware(printer);
@@ -311,8 +343,12 @@ static bool execute_m(fio_virtual_printer *printer, const fio_line *line) {
         return true;
     case 0:
     case 1:
-    case 400:
     case 600:
+        fio_printer_drain(printer);
+        if (printer->live)
+            wait_for_user(printer, line);
+        return true;
+    case 400:
         fio_printer_drain(printer);
         return true;
     default:
@@ -331,6 +367,8 @@ static bool has_free_text(const fio_line *line) {
 bool fio_printer_command(fio_virtual_printer *printer, fio_line *line) {
     if (!has_free_text(line))
         fio_line_words(line);
+    if (printer->firmware && printer->firmware(printer->firmware_context, line))
+        return true;
     bool known = true;
     switch (line->letter) {
     case 'G':
@@ -357,7 +395,5 @@ bool fio_printer_command(fio_virtual_printer *printer, fio_line *line) {
         fio_text_string(&text, "\"");
         fio_printer_say(printer, bytes);
     }
-    if (!printer->halted) /* from then on Marlin is mute */
-        fio_printer_say(printer, "ok");
     return known;
 }

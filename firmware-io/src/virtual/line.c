@@ -20,12 +20,12 @@ static const char *skip_blanks(const char *p, const char *end) {
     return p;
 }
 
-/* Copy what is no comment; `;` ends the line, parentheses enclose. Control bytes become '?', so
- * that an echo of the line can't be taken for two answers. Returns the length before the cut. */
-static size_t strip(fio_line *line, const char *bytes, size_t length) {
+int fio_line_strip(char text[FIO_LINE_MOST + 1], bool *cut, const char *bytes, size_t length) {
     size_t kept = 0;
     const char *end = bytes + length;
-    for (const char *p = bytes; p < end && *p != ';'; p++) {
+    while (end > bytes && (end[-1] == '\n' || end[-1] == '\r'))
+        end--;
+    for (const char *p = skip_blanks(bytes, end); p < end && *p != ';'; p++) {
         if (*p == '(') {
             const char *close = memchr(p, ')', (size_t)(end - p));
             if (!close)
@@ -33,44 +33,81 @@ static size_t strip(fio_line *line, const char *bytes, size_t length) {
             p = close;
             continue;
         }
-        if (kept < FIO_LINE_MOST)
-            line->text[kept] = (unsigned char)*p < ' ' && *p != '\t' ? '?' : *p;
+        if (kept < FIO_LINE_MOST) /* an echo of control bytes could be taken for two answers */
+            text[kept] = (unsigned char)*p < ' ' && *p != '\t' ? '?' : *p;
         kept++;
     }
-    return kept;
+    *cut = kept > FIO_LINE_MOST;
+    int left = *cut ? FIO_LINE_MOST : (int)kept;
+    while (left > 0 && blank(text[left - 1]))
+        left--;
+    text[left] = 0;
+    return left;
 }
 
-/* Cut "*checksum" off. False if the line is numbered and its checksum is wrong or missing; Marlin
- * does not look at the checksums of other lines. */
-static bool check(fio_line *line) {
-    const char *star = NULL, *end = line->text + line->length;
-    for (const char *p = end; p > line->text && !star;)
-        if (*--p == '*')
-            star = p;
+/* C's strtol for 32 bits, as on the boards. */
+static int64_t read_long(const char *p) {
+    while (blank(*p))
+        p++;
+    bool negative = *p == '-';
+    if (*p == '-' || *p == '+')
+        p++;
+    int64_t value = 0;
+    for (; *p >= '0' && *p <= '9'; p++)
+        value = value < INT32_MAX ? value * 10 + (*p - '0') : value;
+    value = value < INT32_MAX ? value : INT32_MAX;
+    return negative ? -value : value;
+}
+
+fio_line_verdict fio_line_check(const char *text, int64_t *last, bool lower) {
+    if (*text != 'N' && !(lower && *text == 'n'))
+        return FIO_LINE_GOOD;
+    const char *number_at = text;
+    bool resets = strstr(text, "M110") != NULL; /* its second N wins */
+    if (resets && strlen(text) > 4 && strchr(text + 4, 'N'))
+        number_at = strchr(text + 4, 'N');
+    int64_t number = read_long(number_at + 1);
+    if (!resets && number != *last + 1)
+        return number == *last || number == *last - 1 ? FIO_LINE_REPEATED : FIO_LINE_NUMBER;
+    const char *star = strrchr(text, '*');
     if (!star)
-        return !line->has_number;
-    double given = -1;
-    const char *start = skip_blanks(star + 1, end), *after = fio_number_read(&given, start, end);
-    line->has_checksum = after > start && skip_blanks(after, end) == end;
-    if (!line->has_checksum)
-        return !line->has_number;
+        return FIO_LINE_UNCHECKED;
     unsigned sum = 0;
-    for (const char *p = line->text; p < star; p++)
+    for (const char *p = text; p < star; p++)
         sum ^= (unsigned char)*p;
-    line->length = (int)(star - line->text);
-    return !line->has_number || given == (double)sum;
+    if (read_long(star + 1) != (int64_t)sum)
+        return FIO_LINE_CHECKSUM;
+    *last = number;
+    return FIO_LINE_GOOD;
 }
 
-static const char *read_line_number(fio_line *line, const char *p, const char *end) {
-    if (p >= end || (*p != 'N' && *p != 'n'))
+const char *fio_line_complaint(fio_line_verdict verdict) {
+    return verdict == FIO_LINE_NUMBER     ? "Line Number is not Last Line Number+1"
+           : verdict == FIO_LINE_CHECKSUM ? "checksum mismatch"
+                                          : "No Checksum with line number";
+}
+
+static const char *read_line_number(fio_line *line, const char *p) {
+    if (*p != 'N' && *p != 'n')
         return p;
-    double number = 0;
-    const char *start = skip_blanks(p + 1, end), *after = fio_number_read(&number, start, end);
-    if (after == start)
+    const char *after = skip_blanks(p + 1, p + strlen(p));
+    if (*after == '-')
+        after++;
+    const char *digits = after;
+    while (*after >= '0' && *after <= '9')
+        after++;
+    if (after == digits)
         return p;
     line->has_number = true;
-    line->number = isinf(number) ? -1 : (int64_t)number;
+    line->number = read_long(p + 1);
     return after;
+}
+
+static bool checksum_follows(const char *p, const char *end) {
+    const char *digits = skip_blanks(p, end), *after = digits;
+    while (after < end && *after >= '0' && *after <= '9')
+        after++;
+    return after > digits && skip_blanks(after, end) == end;
 }
 
 static void read_command(fio_line *line, const char *p, const char *end) {
@@ -94,34 +131,22 @@ static void read_command(fio_line *line, const char *p, const char *end) {
     line->arguments = (int)(after - line->text);
 }
 
-fio_line_kind fio_line_parse(fio_line *line, const char *bytes, size_t length) {
-    while (length > 0 && (bytes[length - 1] == '\n' || bytes[length - 1] == '\r'))
-        length--;
-    while (length > 0 && blank(*bytes))
-        bytes++, length--;
-    size_t kept = strip(line, bytes, length);
-    line->cut = kept > FIO_LINE_MOST;
-    line->length = line->cut ? FIO_LINE_MOST : (int)kept;
-    while (line->length > 0 && blank(line->text[line->length - 1]))
-        line->length--;
-    line->has_number = line->has_checksum = false;
+void fio_line_read(fio_line *line, const char *text, int length) {
+    line->has_number = false;
     line->number = -1;
     line->seen = line->valued = 0;
     line->stray = -1;
-    if (line->length == 0)
-        return FIO_LINE_EMPTY;
-    const char *start = read_line_number(line, line->text, line->text + line->length);
-    if (!check(line))
-        return FIO_LINE_DAMAGED;
-    const char *end = line->text + line->length;
+    const char *end = text + length, *start = read_line_number(line, text);
     start = skip_blanks(start, end);
+    const char *star = strrchr(start, '*');
+    if (star && (line->has_number || checksum_follows(star + 1, end)))
+        end = star;
+    while (end > start && blank(end[-1]))
+        end--;
     line->length = (int)(end - start);
-    memmove(line->text, start, (size_t)line->length);
-    while (line->length > 0 && blank(line->text[line->length - 1]))
-        line->length--;
+    memcpy(line->text, start, (size_t)line->length);
     line->text[line->length] = 0;
     read_command(line, line->text, line->text + line->length);
-    return line->length || line->has_number ? FIO_LINE_COMMAND : FIO_LINE_EMPTY;
 }
 
 void fio_line_words(fio_line *line) {

@@ -8,18 +8,19 @@
 
 #include <isoprint/virtual_printer.h>
 
-typedef enum fio_line_kind {
-    FIO_LINE_EMPTY,   /* blank or comment: no answer */
-    FIO_LINE_COMMAND, /* to be executed */
-    FIO_LINE_DAMAGED, /* checksum wrong or missing */
-} fio_line_kind;
+/* What Marlin thinks of a line's number and checksum. */
+typedef enum fio_line_verdict {
+    FIO_LINE_GOOD,      /* no number, or the one that is due and a checksum that fits */
+    FIO_LINE_REPEATED,  /* it was just had: dropped, without an ok */
+    FIO_LINE_NUMBER,    /* not the one that is due */
+    FIO_LINE_CHECKSUM,  /* does not fit */
+    FIO_LINE_UNCHECKED, /* a number without a checksum */
+} fio_line_verdict;
 
 typedef struct fio_line {
     char text[FIO_LINE_MOST + 1]; /* without comments, N and checksum; ends with a 0 */
     int length;
-    bool cut;        /* longer than FIO_LINE_MOST */
-    bool has_number; /* N was there */
-    bool has_checksum;
+    bool has_number;   /* N was there */
     int64_t number;    /* of N; -1 */
     char letter;       /* G, M, T; 0 if there is no such command */
     int code, subcode; /* G92.1 is 92 and 1 */
@@ -30,7 +31,18 @@ typedef struct fio_line {
     double value[26];
 } fio_line;
 
-fio_line_kind fio_line_parse(fio_line *line, const char *bytes, size_t length);
+/* Copy what is no comment (`;` to the end, or in parentheses), at most FIO_LINE_MOST bytes. Returns
+ * the length; 0 for a line that gets no answer. */
+int fio_line_strip(char text[FIO_LINE_MOST + 1], bool *cut, const char *bytes, size_t length);
+
+/* Check number and checksum of a stripped line, by the rules and in the order of Marlin's
+ * bugfix-2.1 queue. *last, the number before, follows a good line. A `lower` n is a number, too, if
+ * allowed. */
+fio_line_verdict fio_line_check(const char *text, int64_t *last, bool lower);
+const char *fio_line_complaint(fio_line_verdict verdict); /* "checksum mismatch" … */
+
+/* Take a stripped line apart: number and checksum are cut off. */
+void fio_line_read(fio_line *line, const char *text, int length);
 
 /* Read the words of `arguments`: not for commands whose argument is free text. */
 void fio_line_words(fio_line *line);

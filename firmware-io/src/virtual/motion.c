@@ -26,35 +26,46 @@ static void flush_log(fio_virtual_printer *printer) {
         printer->logged = sequence;
         if (pending->dropped)
             continue;
+        double read = printer->live ? pending->executed.start : 0;
         if (!pending->started)
-            pending->executed.start = printer->log_clock;
+            pending->executed.start = read > printer->log_clock ? read : printer->log_clock;
         printer->log_clock = pending->executed.start + pending->executed.duration;
         printer->log.entry(printer->log.context, &pending->executed);
     }
 }
 
-static void pass_time(fio_virtual_printer *printer, int64_t sequence, double seconds,
-                      fio_activity activity) {
+void fio_printer_spend(fio_virtual_printer *printer, int64_t sequence, double start, double seconds,
+                       fio_activity activity) {
     if (printer->log.entry) {
         fio_pending *pending = pending_of(printer, sequence);
         if (!pending->started)
-            pending->executed.start = printer->clock;
+            pending->executed.start = start;
         pending->started = true;
-        pending->executed.duration += seconds;
+        pending->executed.duration = printer->live ? start + seconds - pending->executed.start
+                                                   : pending->executed.duration + seconds;
     }
-    printer->clock += seconds;
     printer->statistics.time[activity] += seconds;
     printer->statistics.total_time += seconds;
+}
+
+static void pass_time(fio_virtual_printer *printer, int64_t sequence, double seconds,
+                      fio_activity activity) {
+    fio_printer_spend(printer, sequence, printer->clock, seconds, activity);
+    printer->clock += seconds;
+}
+
+void fio_printer_block_done(fio_virtual_printer *printer, const fio_block *block) {
+    if (!printer->log.entry)
+        return;
+    pending_of(printer, block->sequence)->blocks--;
+    flush_log(printer);
 }
 
 static void take_block(fio_virtual_printer *printer) {
     fio_block block;
     double seconds = fio_planner_take(&printer->planner, &block);
     pass_time(printer, block.sequence, seconds, block.activity);
-    if (printer->log.entry) {
-        pending_of(printer, block.sequence)->blocks--;
-        flush_log(printer);
-    }
+    fio_printer_block_done(printer, &block);
 }
 
 void fio_printer_drain(fio_virtual_printer *printer) {
@@ -65,8 +76,10 @@ void fio_printer_drain(fio_virtual_printer *printer) {
 
 void fio_printer_abandon(fio_virtual_printer *printer) {
     printer->planner.count = 0;
+    printer->running = printer->ran_dry = false;
     fio_planner_rest(&printer->planner);
-    for (int64_t i = printer->logged + 1; printer->log.entry && i < printer->sequence; i++) {
+    int64_t end = printer->sequence + (printer->open ? 0 : 1);
+    for (int64_t i = printer->logged + 1; printer->log.entry && i < end; i++) {
         fio_pending *pending = pending_of(printer, i);
         pending->dropped = pending->blocks > 0;
         pending->blocks = 0;
@@ -75,7 +88,14 @@ void fio_printer_abandon(fio_virtual_printer *printer) {
 
 void fio_printer_wait(fio_virtual_printer *printer, double seconds, fio_activity activity) {
     fio_printer_drain(printer);
-    if (seconds > 0)
+    if (printer->live) {
+        printer->waiting = seconds > 0;
+        printer->wait_start = printer->clock;
+        printer->wait_end = printer->clock + seconds;
+        printer->wait_activity = activity;
+        printer->wait_heater = NULL;
+        printer->wait_user = false;
+    } else if (seconds > 0)
         pass_time(printer, printer->sequence, seconds, activity);
 }
 
@@ -95,8 +115,14 @@ void fio_printer_start_entry(fio_virtual_printer *printer, const fio_line *line)
     memcpy(pending->text, line->text, (size_t)line->length + 1);
     pending->executed = (fio_executed){.line = printer->line,
                                        .number = line->number,
+                                       .start = printer->clock,
                                        .text = pending->text,
                                        .length = (size_t)line->length};
+}
+
+void fio_printer_know_entry(fio_virtual_printer *printer, bool known) {
+    if (printer->log.entry)
+        pending_of(printer, printer->sequence)->executed.known = known;
 }
 
 void fio_printer_end_entry(fio_virtual_printer *printer) {
@@ -267,6 +293,8 @@ void fio_printer_move(fio_virtual_printer *printer, const double target[3], doub
                                      : FIO_LIFTING;
         if (printer->log.entry)
             pending_of(printer, printer->sequence)->blocks++;
+        if (printer->live)
+            fio_printer_added(printer, along_path);
         if (extrusion != 0)
             count_filament(printer, extrusion, along_path);
         if (along_path)

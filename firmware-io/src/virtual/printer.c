@@ -81,8 +81,9 @@ static fio_heater cold_heater(const fio_heater_options *options, double room) {
     return (fio_heater){.temperature = room, .room = room, .options = *options};
 }
 
-static void set_up(fio_virtual_printer *printer, const fio_virtual_options *options) {
-    printer->options = *options;
+/* What the firmware knows after it booted. */
+static void set_state(fio_virtual_printer *printer) {
+    const fio_virtual_options *options = &printer->options;
     fio_limits *limits = &printer->limits;
     memcpy(limits->feedrate, options->maximum_feedrate, sizeof limits->feedrate);
     memcpy(limits->acceleration, options->maximum_acceleration, sizeof limits->acceleration);
@@ -90,8 +91,37 @@ static void set_up(fio_virtual_printer *printer, const fio_virtual_options *opti
     limits->print_acceleration = options->print_acceleration;
     limits->retract_acceleration = options->retract_acceleration;
     limits->travel_acceleration = options->travel_acceleration;
+    limits->minimum_feedrate = limits->minimum_travel_feedrate = 0;
     limits->junction_deviation = options->junction_deviation;
     limits->classic_jerk = options->classic_jerk;
+    memcpy(printer->firmware_retract, options->firmware_retract, sizeof printer->firmware_retract);
+    memset(printer->offset, 0, sizeof printer->offset);
+    memset(printer->homed, 0, sizeof printer->homed);
+    printer->e = printer->feedrate = printer->fan = printer->firmware_retracted = 0;
+    printer->unit_length = 1;
+    printer->absolute = printer->absolute_extrusion = printer->end_stops = true;
+    printer->allow_cold = printer->halted = false;
+    printer->feedrate_percent = printer->flow_percent = 100;
+    printer->extrusion_minimum_temperature = options->extrusion_minimum_temperature;
+    printer->progress_percent = printer->minutes_left = -1;
+    printer->last_number = 0;
+    printer->tool = 0;
+}
+
+void fio_printer_reset(fio_virtual_printer *printer) {
+    if (printer->waiting)
+        fio_printer_end_wait(printer);
+    if (printer->open)
+        fio_printer_end_entry(printer);
+    fio_printer_abandon(printer);
+    for (int i = 0; i < FIO_TOOLS_MOST; i++)
+        fio_heater_set(&printer->nozzle[i], printer->clock, 0);
+    fio_heater_set(&printer->bed, printer->clock, 0);
+    set_state(printer);
+}
+
+static void set_up(fio_virtual_printer *printer, const fio_virtual_options *options) {
+    printer->options = *options;
     printer->planner.capacity = options->planner_blocks;
     for (int i = 0; i < FIO_TOOLS_MOST; i++)
         printer->nozzle[i] = cold_heater(&options->nozzle, options->room_temperature);
@@ -99,13 +129,8 @@ static void set_up(fio_virtual_printer *printer, const fio_virtual_options *opti
     printer->statistics.highest_nozzle = options->room_temperature;
     printer->statistics.highest_bed = options->room_temperature;
     memcpy(printer->machine, options->origin, sizeof printer->machine);
-    memcpy(printer->firmware_retract, options->firmware_retract, sizeof printer->firmware_retract);
-    printer->unit_length = 1;
-    printer->absolute = printer->absolute_extrusion = printer->end_stops = true;
-    printer->feedrate_percent = printer->flow_percent = 100;
-    printer->extrusion_minimum_temperature = options->extrusion_minimum_temperature;
-    printer->progress_percent = printer->minutes_left = -1;
     printer->filament_area = PI / 4 * options->filament_diameter * options->filament_diameter;
+    set_state(printer);
 }
 
 fio_status fio_virtual_printer_create(fio_virtual_printer **printer,
@@ -133,7 +158,7 @@ void fio_virtual_printer_free(fio_virtual_printer *printer) {
 }
 
 static fio_status reject(fio_virtual_printer *printer, const char *why) {
-    char bytes[120];
+    char bytes[96];
     fio_text text = fio_text_in(bytes, sizeof bytes);
     fio_text_string(&text, "Error:");
     fio_text_string(&text, why);
@@ -146,73 +171,69 @@ static fio_status reject(fio_virtual_printer *printer, const char *why) {
     fio_printer_say(printer, bytes);
     fio_printer_say(printer, "ok");
     printer->statistics.rejected_lines++;
-    if (printer->lost_line == 0)
+    if (!printer->lost_line)
         printer->lost_line = printer->line;
     return fio_fail(FIO_REJECTED, "line %lld: %s", (long long)printer->line, why);
 }
 
-/* The rules of numbered lines. FIO_OK and *execute false: a line sent twice, dropped in silence. */
-static fio_status accept_number(fio_virtual_printer *printer, const fio_line *line, bool damaged,
-                                bool *execute) {
-    *execute = true;
-    if (!line->has_number)
-        return FIO_OK;
-    int64_t number = line->number, last = printer->last_number;
-    bool resets = !damaged && line->letter == 'M' && line->code == 110;
-    if (!resets && number != last + 1) {
-        if (number == last || number == last - 1) {
-            printer->statistics.duplicate_lines++;
-            *execute = false;
-            return FIO_OK;
-        }
-        return reject(printer, "Line Number is not Last Line Number+1");
+void fio_printer_begin(fio_virtual_printer *printer, fio_line *line, bool cut) {
+    if (cut) {
+        bool g = line->letter == 'G';
+        fio_printer_event(printer, g ? FIO_FAULT_LINE_TOO_LONG : FIO_WARNING_TEXT_CUT,
+                          "the line is longer than the firmware keeps, and was cut");
     }
-    if (damaged)
-        return reject(printer,
-                      line->has_checksum ? "checksum mismatch" : "No Checksum with line number");
-    printer->last_number = number;
-    printer->lost_line = 0;
-    if (resets) {
-        fio_line words = *line; /* its second N wins */
-        fio_line_words(&words);
-        if (fio_line_has(&words, 'N'))
-            printer->last_number = (int64_t)fio_line_value(&words, 'N');
-    }
-    return FIO_OK;
+    printer->statistics.commands++;
+    printer->answered = false;
+    fio_printer_start_entry(printer, line);
+    bool known = fio_printer_command(printer, line);
+    fio_printer_know_entry(printer, known);
+    if (known)
+        return;
+    printer->statistics.unknown_commands++;
+    fio_printer_event(printer, FIO_WARNING_UNKNOWN_COMMAND, line->text);
+}
+
+void fio_printer_next_line(fio_virtual_printer *printer, fio_reply *reply, void *context) {
+    printer->line++;
+    printer->line_codes = 0;
+    printer->statistics.lines++;
+    printer->reply = reply;
+    printer->reply_context = context;
 }
 
 fio_status fio_virtual_printer_execute(fio_virtual_printer *printer, const char *line,
                                        size_t length, fio_reply *reply, void *context) {
     if (printer->finished)
         return fio_fail(FIO_USAGE, "the print is finished: make a new virtual printer");
-    fio_line parsed;
-    printer->line++;
-    printer->line_codes = 0;
-    printer->statistics.lines++;
-    printer->reply = reply;
-    printer->reply_context = context;
-    fio_line_kind kind = fio_line_parse(&parsed, line, length);
-    if (kind == FIO_LINE_EMPTY)
+    if (printer->live)
+        return fio_fail(FIO_USAGE, "the printer belongs to a machine, which feeds it");
+    char text[FIO_LINE_MOST + 1];
+    bool cut;
+    fio_printer_next_line(printer, reply, context);
+    int kept = fio_line_strip(text, &cut, line, length);
+    if (kept == 0)
         return FIO_OK;
     if (printer->halted) {
         fio_printer_event(printer, FIO_FAULT_HALTED, "a line after the emergency stop");
         return fio_fail(FIO_REJECTED, "the printer is halted");
     }
-    bool execute;
-    fio_status status = accept_number(printer, &parsed, kind == FIO_LINE_DAMAGED, &execute);
-    if (status != FIO_OK || !execute)
-        return status;
-    if (parsed.cut) {
-        bool g = parsed.letter == 'G';
-        fio_printer_event(printer, g ? FIO_FAULT_LINE_TOO_LONG : FIO_WARNING_TEXT_CUT,
-                          "the line is longer than the firmware keeps, and was cut");
+    int64_t before = printer->last_number;
+    fio_line_verdict verdict = fio_line_check(text, &printer->last_number, true);
+    if (verdict == FIO_LINE_REPEATED) {
+        printer->statistics.duplicate_lines++;
+        return FIO_OK;
     }
-    printer->statistics.commands++;
-    fio_printer_start_entry(printer, &parsed);
-    if (!fio_printer_command(printer, &parsed)) {
-        printer->statistics.unknown_commands++;
-        fio_printer_event(printer, FIO_WARNING_UNKNOWN_COMMAND, parsed.text);
-    }
+    if (verdict != FIO_LINE_GOOD)
+        return reject(printer, fio_line_complaint(verdict));
+    fio_line parsed;
+    fio_line_read(&parsed, text, kept);
+    if (parsed.length == 0 && !parsed.has_number)
+        return FIO_OK;
+    if (parsed.has_number || printer->last_number != before)
+        printer->lost_line = 0;
+    fio_printer_begin(printer, &parsed, cut);
+    if (!printer->halted && !printer->answered) /* a halted Marlin is mute */
+        fio_printer_say(printer, "ok");
     fio_printer_end_entry(printer);
     return FIO_OK;
 }
@@ -253,6 +274,8 @@ fio_status fio_virtual_printer_finish(fio_virtual_printer *printer) {
     if (printer->finished)
         return fio_fail(FIO_USAGE, "the print is already finished");
     printer->finished = true;
+    if (printer->live)
+        fio_printer_run_out(printer);
     fio_printer_drain(printer);
     printer->line_codes = 0;
     printer->line = printer->lost_line;

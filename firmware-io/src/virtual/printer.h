@@ -20,6 +20,14 @@ typedef struct fio_pending {
     char text[FIO_LINE_MOST + 1];
 } fio_pending;
 
+/* An arc whose chords are still to be planned. */
+typedef struct fio_arc {
+    double centre[2], radius, growth; /* radius + growth · fraction at a fraction of the way */
+    double start_angle, angle;        /* rad; positive is counter-clockwise */
+    double start_z, end[3], extrusion, feedrate;
+    int chords, next; /* next > chords: none is left */
+} fio_arc;
+
 struct fio_virtual_printer {
     fio_virtual_options options;
     fio_limits limits;
@@ -49,6 +57,22 @@ struct fio_virtual_printer {
     fio_reply *reply;
     void *reply_context;
 
+    fio_arc arc;
+    bool answered; /* the command's own answer was its ok */
+
+    /* Within a machine time comes from outside: `clock` is now, the oldest block has left the
+     * planner and is being made, and a command that takes time is `waiting`. */
+    bool live, running, waiting, wait_user, ran_dry;
+    fio_block block;
+    double block_start, block_end, delayed_start;
+    double wait_start, wait_end;
+    fio_activity wait_activity;
+    fio_heater *wait_heater;
+    int64_t starved;
+    /* What a machine's firmware does itself; true: done. */
+    bool (*firmware)(void *context, const fio_line *line);
+    void *firmware_context;
+
     fio_execution_log log;
     int64_t sequence, logged; /* commands executed; of them, logged */
     bool open;                /* command `sequence` is being executed */
@@ -65,7 +89,30 @@ void fio_printer_event_value(fio_virtual_printer *printer, fio_event_code code, 
                              double value, const char *after);
 void fio_printer_say(fio_virtual_printer *printer, const char *text);
 
+/* printer.c: the parts of executing one line. */
+void fio_printer_next_line(fio_virtual_printer *printer, fio_reply *reply, void *context);
+void fio_printer_begin(fio_virtual_printer *printer, fio_line *line, bool cut);
+void fio_printer_reset(fio_virtual_printer *printer); /* what a reset of its processor does */
+
+/* live.c: a printer whose time comes from outside. */
+void fio_printer_live(fio_virtual_printer *printer, double now);
+/* Make what is made by `now`. */
+void fio_printer_advance(fio_virtual_printer *printer, double now);
+/* When the block being made ends, or the next one begins; INFINITY: nothing moves. */
+double fio_printer_next(const fio_virtual_printer *printer);
+/* The planner, as it is now, lets this line be executed without waiting for it. */
+bool fio_printer_ready(fio_virtual_printer *printer, const fio_line *line);
+int fio_printer_moves_free(const fio_virtual_printer *printer);
+/* The time of a waiting command is over, at `clock`. */
+void fio_printer_end_wait(fio_virtual_printer *printer);
+void fio_printer_run_out(fio_virtual_printer *printer); /* make all moves that are planned */
+void fio_printer_added(fio_virtual_printer *printer, bool along_path); /* a block to the planner */
+
 /* motion.c */
+void fio_printer_spend(fio_virtual_printer *printer, int64_t sequence, double start, double seconds,
+                       fio_activity activity);
+void fio_printer_block_done(fio_virtual_printer *printer, const fio_block *block);
+void fio_printer_know_entry(fio_virtual_printer *printer, bool known);
 void fio_printer_start_entry(fio_virtual_printer *printer, const fio_line *line);
 void fio_printer_end_entry(fio_virtual_printer *printer);
 void fio_printer_drain(fio_virtual_printer *printer);
@@ -84,6 +131,13 @@ double fio_printer_feedrate(const fio_virtual_printer *printer); /* mm/s now */
 
 /* arc.c */
 void fio_printer_arc(fio_virtual_printer *printer, const fio_line *line, bool clockwise);
+/* Plan the next chord of the arc under way; false if there is none. */
+bool fio_printer_next_chord(fio_virtual_printer *printer);
+
+/* command.c */
+void fio_printer_temperatures(const fio_virtual_printer *printer, fio_text *text);
+void fio_printer_say_position(fio_virtual_printer *printer);
+void fio_printer_halt(fio_virtual_printer *printer, const char *why); /* heaters off, mute */
 
 /* command.c, setting.c: false if the command is unknown. */
 bool fio_printer_command(fio_virtual_printer *printer, fio_line *line);

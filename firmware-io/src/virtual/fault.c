@@ -1,0 +1,128 @@
+/* What the line does to the bytes. */
+#include <string.h>
+
+#include "virtual/machine.h"
+
+static uint8_t flipped(fio_machine *machine, uint8_t byte) {
+    machine->counts.faults++;
+    return byte ^ (uint8_t)(1 << fio_random_below(&machine->random, 8));
+}
+
+/* Each bit by itself, so that a byte is damaged with this probability; never unchanged. */
+static uint8_t scrambled(fio_machine *machine, uint8_t byte) {
+    machine->counts.faults++;
+    return byte ^ (uint8_t)(1 + fio_random_below(&machine->random, 255));
+}
+
+static bool wrong_rate(const fio_machine *machine) {
+    return machine->options.rate && machine->host_rate &&
+           machine->host_rate != machine->options.rate;
+}
+
+/* A line's one flipped bit is somewhere in it: drawn when it begins, by the length of the line
+ * before, at the latest in its end. */
+static void begin_line(fio_machine *machine) {
+    const fio_machine_faults *faults = &machine->options.faults;
+    int length = machine->last_line_length > 0 ? machine->last_line_length : 16;
+    machine->damage_at = machine->lose_at = -1;
+    if (fio_random_chance(&machine->random, faults->flip_in))
+        machine->damage_at = fio_random_below(&machine->random, length);
+    if (fio_random_chance(&machine->random, faults->lose_bytes_in)) {
+        machine->lose_at = fio_random_below(&machine->random, length);
+        machine->lose_count = 1 + fio_random_below(&machine->random, 8);
+        machine->counts.faults++;
+    }
+}
+
+void fio_fault_byte(fio_machine *machine, uint8_t byte) {
+    const fio_machine_faults *faults = &machine->options.faults;
+    bool end = byte == '\n', lost = false;
+    uint8_t arrived = byte;
+    if (machine->line_length == 0)
+        begin_line(machine);
+    int at = machine->line_length++;
+    if (machine->damage_at >= 0 && (at == machine->damage_at || end)) {
+        arrived = flipped(machine, arrived);
+        machine->damage_at = -1;
+    }
+    if (fio_random_chance(&machine->random, faults->flip_bytes))
+        arrived = scrambled(machine, arrived);
+    if (wrong_rate(machine))
+        arrived = (uint8_t)fio_random_next(&machine->random);
+    if (machine->lose_at >= 0 && (at >= machine->lose_at || end)) {
+        lost = true;
+        if (--machine->lose_count == 0)
+            machine->lose_at = -1;
+    }
+    if (end) {
+        machine->last_line_length = machine->line_length;
+        machine->line_length = 0;
+    }
+    if (lost)
+        machine->lost_before = true;
+    else
+        fio_firmware_receive(machine, arrived, arrived != byte);
+}
+
+static void put(fio_machine *machine, uint8_t byte) {
+    if (!machine->plugged || fio_wire_room(&machine->out) == 0)
+        return;
+    if (wrong_rate(machine))
+        byte = (uint8_t)fio_random_next(&machine->random);
+    fio_wire_put(&machine->out, machine->now, byte);
+}
+
+static void put_line(fio_machine *machine, const char *text, size_t length) {
+    const fio_machine_faults *faults = &machine->options.faults;
+    size_t flip = SIZE_MAX;
+    if (fio_random_chance(&machine->random, faults->flip_out))
+        flip = (size_t)fio_random_below(&machine->random, (int)length + 1);
+    for (size_t i = 0; i <= length; i++) {
+        uint8_t byte = i < length ? (uint8_t)text[i] : '\n';
+        if (i == flip)
+            byte = flipped(machine, byte);
+        if (fio_random_chance(&machine->random, faults->flip_bytes))
+            byte = scrambled(machine, byte);
+        put(machine, byte);
+    }
+}
+
+void fio_fault_answer(fio_machine *machine, const char *text, size_t length, bool ok) {
+    const fio_machine_faults *faults = &machine->options.faults;
+    if (ok && fio_random_chance(&machine->random, faults->lose_ok)) {
+        machine->counts.faults++;
+        return;
+    }
+    if (ok && fio_random_chance(&machine->random, faults->late_ok) &&
+        fio_fault_hold(machine, text, length, faults->late_seconds)) {
+        machine->counts.faults++;
+        return;
+    }
+    put_line(machine, text, length);
+    if (ok && fio_random_chance(&machine->random, faults->double_ok)) {
+        machine->counts.faults++;
+        put_line(machine, text, length);
+    }
+}
+
+/* Late answers are kept in order of the time they are due. */
+bool fio_fault_hold(fio_machine *machine, const char *text, size_t length, double seconds) {
+    if (machine->held == FIO_HELD_MOST || length >= sizeof machine->late[0].text)
+        return false;
+    fio_late *late = &machine->late[machine->held++];
+    late->at = machine->now + seconds;
+    late->length = length;
+    memcpy(late->text, text, length);
+    return true;
+}
+
+double fio_fault_next(const fio_machine *machine) {
+    return machine->held ? machine->late[0].at : INFINITY;
+}
+
+void fio_fault_release(fio_machine *machine) {
+    while (machine->held > 0 && machine->late[0].at <= machine->now) {
+        put_line(machine, machine->late[0].text, machine->late[0].length);
+        memmove(machine->late, machine->late + 1, (size_t)--machine->held * sizeof *machine->late);
+    }
+}

@@ -1,0 +1,335 @@
+/* The firmware's main loop: reads lines, queues them, executes them one after the other. */
+#include <math.h>
+#include <string.h>
+
+#include "virtual/machine.h"
+
+/* Of answers that wait to leave: the processor goes on once there are fewer, as with a full
+ * transmit buffer. What has to be read by the host itself may be more. */
+#define WIRE_BACKLOG 128
+#define USB_BACKLOG 4096
+
+#define HEATING_REPORT_SECONDS 1
+
+void fio_firmware_reset(fio_machine *machine) {
+    fio_printer_reset(machine->printer);
+    machine->counts.resets++;
+    machine->received_first = machine->received_last;
+    machine->reader = (fio_reader){0};
+    machine->line_tainted = false;
+    machine->emergency = (fio_emergency_parser){0};
+    machine->queued = 0;
+    machine->busy_seconds = machine->options.busy_seconds;
+    machine->temperature_seconds = machine->position_seconds = 0;
+    machine->processor = FIO_BOOTING;
+    machine->until = machine->now + machine->options.boot_seconds;
+    fio_wire_discard(&machine->out, machine->now);
+}
+
+static void emergency(fio_machine *machine, fio_emergency what) {
+    fio_virtual_printer *printer = machine->printer;
+    switch (what) {
+    case FIO_EMERGENCY_KILL:
+        fio_firmware_say(machine, "echo:M112 Shutdown");
+        fio_firmware_kill(machine, NULL);
+        break;
+    case FIO_EMERGENCY_STOP:
+        fio_printer_abandon(printer);
+        break;
+    case FIO_EMERGENCY_BREAK:
+    case FIO_EMERGENCY_ANSWER:
+        if (machine->processor == FIO_WAITING && (printer->wait_user || printer->wait_heater))
+            printer->wait_end = fmin(printer->wait_end, machine->now);
+        break;
+    default:
+        break;
+    }
+}
+
+void fio_firmware_kill(fio_machine *machine, const char *error) {
+    fio_virtual_printer *printer = machine->printer;
+    fio_printer_advance(printer, machine->now);
+    if (printer->waiting)
+        fio_printer_end_wait(printer);
+    if (printer->open)
+        fio_printer_end_entry(printer);
+    printer->line_codes = 0;
+    fio_printer_halt(printer, error ? error : "emergency stop (M112)");
+    if (error)
+        fio_firmware_say(machine, error);
+    fio_firmware_say(machine, "Error:Printer halted. kill() called!");
+    fio_firmware_say(machine, "//action:poweroff");
+    machine->processor = FIO_HALTED;
+    machine->queued = 0;
+}
+
+bool fio_firmware_may_receive(const fio_machine *machine) {
+    if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED)
+        return true; /* and lost */
+    return machine->received_last - machine->received_first <
+           (unsigned)machine->options.receive_bytes - 1; /* a ring keeps one place empty */
+}
+
+void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted) {
+    if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED)
+        return;
+    if (machine->options.emergency_parser) {
+        emergency(machine, fio_emergency_feed(&machine->emergency, (char)byte));
+        if (machine->processor == FIO_HALTED)
+            return;
+    }
+    if (!fio_firmware_may_receive(machine)) {
+        machine->counts.overruns++;
+        machine->lost_before = true;
+        return;
+    }
+    tainted = tainted || machine->lost_before;
+    machine->lost_before = false;
+    machine->received[machine->received_last++ & (FIO_RECEIVE_MOST - 1)] =
+        (uint16_t)(byte | (tainted ? FIO_TAINT : 0));
+}
+
+void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict) {
+    fio_virtual_printer *printer = machine->printer;
+    char bytes[96];
+    fio_text text = fio_text_in(bytes, sizeof bytes);
+    fio_text_string(&text, "Error:");
+    fio_text_string(&text, fio_line_complaint(verdict));
+    fio_text_string(&text, ", Last Line: ");
+    fio_text_integer(&text, printer->last_number);
+    fio_firmware_say(machine, bytes);
+    if (machine->received_first != machine->received_last)
+        machine->lost_before = true;
+    machine->received_first = machine->received_last;
+    text = fio_text_in(bytes, sizeof bytes);
+    fio_text_string(&text, "Resend: ");
+    fio_text_integer(&text, printer->last_number + 1);
+    fio_firmware_say(machine, bytes);
+    machine->counts.resends++;
+    machine->counts.oks++;
+    fio_firmware_reply(machine, "ok", 2);
+    printer->statistics.rejected_lines++;
+}
+
+/* Without an emergency parser these act when they are read, as long as they bear no number. */
+static void act_early(fio_machine *machine, const char *text) {
+    if (machine->options.emergency_parser)
+        return;
+    if (!strncmp(text, "M108", 4))
+        emergency(machine, FIO_EMERGENCY_BREAK);
+    if (!strncmp(text, "M112", 4))
+        emergency(machine, FIO_EMERGENCY_KILL);
+    if (!strncmp(text, "M410", 4))
+        emergency(machine, FIO_EMERGENCY_STOP);
+}
+
+static void take_line(fio_machine *machine) {
+    fio_reader *reader = &machine->reader;
+    fio_virtual_printer *printer = machine->printer;
+    machine->counts.lines_in++;
+    fio_line_verdict verdict =
+        fio_line_check(reader->text, &printer->last_number, machine->options.case_insensitive);
+    if (verdict == FIO_LINE_REPEATED) {
+        printer->statistics.duplicate_lines++;
+        return;
+    }
+    if (verdict != FIO_LINE_GOOD) {
+        fio_firmware_reject(machine, verdict);
+        return;
+    }
+    act_early(machine, reader->text);
+    if (machine->processor == FIO_HALTED)
+        return;
+    int slot = (machine->oldest + machine->queued++) % machine->options.command_slots;
+    fio_queued *queued = &machine->queue[slot];
+    memcpy(queued->text, reader->text, (size_t)reader->length + 1);
+    queued->length = reader->length;
+    queued->cut = reader->cut;
+    queued->tainted = machine->line_tainted;
+    queued->silent = false;
+}
+
+static void read_lines(fio_machine *machine) {
+    while (machine->queued < machine->options.command_slots &&
+           machine->received_first != machine->received_last) {
+        uint16_t got = machine->received[machine->received_first++ & (FIO_RECEIVE_MOST - 1)];
+        if (got & FIO_TAINT)
+            machine->line_tainted = true;
+        bool whole = fio_reader_feed(&machine->reader, (char)(got & 0xff));
+        if (whole)
+            take_line(machine);
+        if (machine->reader.done) /* a false end of line taints the line after it, too */
+            machine->line_tainted = got & FIO_TAINT;
+    }
+}
+
+static void begin(fio_machine *machine) {
+    fio_virtual_printer *printer = machine->printer;
+    fio_queued *queued = &machine->queue[machine->oldest];
+    printer->arc.next = printer->arc.chords + 1;
+    fio_printer_next_line(printer, fio_firmware_reply, machine);
+    int64_t unknown = printer->statistics.unknown_commands;
+    fio_printer_begin(printer, &machine->line, queued->cut);
+    bool known = printer->statistics.unknown_commands == unknown;
+    if (queued->tainted && (known || machine->line.has_number))
+        machine->counts.undetectable++;
+    if (printer->halted)
+        machine->processor = FIO_HALTED;
+    else if (printer->waiting)
+        machine->processor = FIO_WAITING;
+    else
+        machine->processor = FIO_CHORDS;
+    machine->wait_report_at = machine->now + HEATING_REPORT_SECONDS;
+}
+
+static void finish(fio_machine *machine) {
+    fio_virtual_printer *printer = machine->printer;
+    fio_printer_end_entry(printer);
+    if (!machine->queue[machine->oldest].silent && !printer->answered)
+        fio_firmware_ok(machine);
+    machine->oldest = (machine->oldest + 1) % machine->options.command_slots;
+    machine->queued--;
+    machine->processor = FIO_IDLE;
+}
+
+static void boot(fio_machine *machine) {
+    fio_firmware_say(machine, "start");
+    fio_firmware_say(machine, "Marlin 2.1 (isoprint virtual printer)");
+    machine->processor = FIO_IDLE;
+}
+
+static unsigned backlog(const fio_machine *machine, unsigned *most) {
+    bool wire = machine->out.byte_seconds > 0;
+    *most = wire ? WIRE_BACKLOG : USB_BACKLOG;
+    unsigned waiting = fio_wire_waiting(&machine->out);
+    if (!wire)
+        return fio_wire_readable(&machine->out);
+    double left = (machine->now - machine->out.next) / machine->out.byte_seconds + 1;
+    unsigned gone = left > 0 ? left < waiting ? (unsigned)left : waiting : 0;
+    return waiting - gone;
+}
+
+/* One transition of the processor; false if there is none now. */
+static bool turn(fio_machine *machine) {
+    fio_virtual_printer *printer = machine->printer;
+    unsigned most;
+    switch (machine->processor) {
+    case FIO_BOOTING:
+        if (machine->now < machine->until)
+            return false;
+        boot(machine);
+        return true;
+    case FIO_IDLE:
+        read_lines(machine);
+        if (machine->processor != FIO_IDLE || machine->queued == 0 ||
+            backlog(machine, &most) > most)
+            return false;
+        machine->processor = FIO_WORKING;
+        machine->until = machine->now + machine->options.line_seconds;
+        return true;
+    case FIO_WORKING:
+        if (machine->now < machine->until)
+            return false;
+        fio_line_read(&machine->line, machine->queue[machine->oldest].text,
+                      machine->queue[machine->oldest].length);
+        machine->busy_at = machine->now + machine->busy_seconds;
+        machine->processor = FIO_BLOCKED;
+        return true;
+    case FIO_BLOCKED:
+        read_lines(machine);
+        if (machine->processor != FIO_BLOCKED || !fio_printer_ready(printer, &machine->line))
+            return false;
+        begin(machine);
+        return true;
+    case FIO_CHORDS:
+        read_lines(machine);
+        if (machine->processor != FIO_CHORDS)
+            return false;
+        if (printer->arc.next <= printer->arc.chords) {
+            if (fio_printer_moves_free(printer) == 0)
+                return false;
+            fio_printer_next_chord(printer);
+        } else
+            finish(machine);
+        return true;
+    case FIO_WAITING:
+        read_lines(machine);
+        if (machine->processor != FIO_WAITING || machine->now < printer->wait_end)
+            return false;
+        fio_printer_end_wait(printer);
+        machine->processor = FIO_CHORDS;
+        return true;
+    default:
+        machine->received_first = machine->received_last;
+        return false;
+    }
+}
+
+static bool works_long(const fio_machine *machine) {
+    return machine->processor == FIO_BLOCKED || machine->processor == FIO_CHORDS ||
+           machine->processor == FIO_WAITING;
+}
+
+static void say_busy(fio_machine *machine) {
+    if (!works_long(machine) || machine->busy_seconds == 0 || machine->now < machine->busy_at)
+        return;
+    bool user = machine->processor == FIO_WAITING && machine->printer->wait_user;
+    fio_firmware_say(machine, user ? "echo:busy: paused for user" : "echo:busy: processing");
+    machine->busy_at = machine->now + machine->busy_seconds;
+}
+
+static void report_heating(fio_machine *machine) {
+    fio_virtual_printer *printer = machine->printer;
+    if (machine->processor != FIO_WAITING || !printer->wait_heater ||
+        machine->now < machine->wait_report_at)
+        return;
+    char bytes[320];
+    fio_text text = fio_text_in(bytes, sizeof bytes);
+    fio_printer_temperatures(printer, &text);
+    fio_text_string(&text, " W:?");
+    fio_firmware_say(machine, bytes);
+    machine->wait_report_at = machine->now + HEATING_REPORT_SECONDS;
+}
+
+void fio_firmware_step(fio_machine *machine) {
+    fio_printer_advance(machine->printer, machine->now);
+    while (turn(machine))
+        ;
+    fio_fault_release(machine);
+    if (machine->processor == FIO_HALTED || machine->processor == FIO_BOOTING)
+        return;
+    say_busy(machine);
+    report_heating(machine);
+    fio_firmware_reports(machine);
+}
+
+static double next_turn(const fio_machine *machine) {
+    const fio_virtual_printer *printer = machine->printer;
+    unsigned most, waiting;
+    switch (machine->processor) {
+    case FIO_BOOTING:
+    case FIO_WORKING:
+        return machine->until;
+    case FIO_IDLE:
+        waiting = backlog(machine, &most);
+        if (machine->queued == 0 || machine->out.byte_seconds == 0 || waiting <= most)
+            return INFINITY;
+        return machine->now + (waiting - most + 1) * machine->out.byte_seconds;
+    case FIO_BLOCKED:
+    case FIO_CHORDS:
+        return fio_printer_next(printer);
+    case FIO_WAITING:
+        return fmin(printer->wait_end, printer->wait_heater ? machine->wait_report_at : INFINITY);
+    default:
+        return INFINITY;
+    }
+}
+
+double fio_firmware_next(const fio_machine *machine) {
+    double next = fmin(next_turn(machine), fio_fault_next(machine));
+    if (works_long(machine) && machine->busy_seconds > 0)
+        next = fmin(next, machine->busy_at);
+    if (machine->processor != FIO_HALTED && machine->processor != FIO_BOOTING)
+        next = fmin(next, fio_firmware_next_report(machine));
+    return next;
+}

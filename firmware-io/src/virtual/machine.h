@@ -1,0 +1,107 @@
+/* The inside of a machine: a serial line, a firmware with its buffers, and the printer. */
+#ifndef FIO_VIRTUAL_MACHINE_H
+#define FIO_VIRTUAL_MACHINE_H
+
+#include <isoprint/machine.h>
+
+#include "virtual/printer.h"
+#include "virtual/random.h"
+#include "virtual/reader.h"
+#include "virtual/wire.h"
+
+enum {
+    FIO_RECEIVE_MOST = 4096, /* bytes of the receive buffer: a power of two */
+    FIO_SLOTS_MOST = 64,
+    FIO_HELD_MOST = 16
+};
+
+/* A line that was taken in and waits for its turn. */
+typedef struct fio_queued {
+    char text[FIO_LINE_MOST + 1];
+    int length;
+    bool cut;
+    bool tainted; /* what the host sent is not what arrived */
+    bool silent;  /* not from the host: no ok */
+} fio_queued;
+
+typedef enum fio_processor {
+    FIO_BOOTING,
+    FIO_IDLE,
+    FIO_WORKING, /* until `until` */
+    FIO_BLOCKED, /* until the planner lets the line be executed */
+    FIO_CHORDS,  /* of an arc, each needs a place in the planner */
+    FIO_WAITING, /* for a heater, a time, a person */
+    FIO_HALTED
+} fio_processor;
+
+/* An answer that comes late. */
+typedef struct fio_late {
+    double at;
+    size_t length;
+    char text[120];
+} fio_late;
+
+struct fio_machine {
+    fio_machine_options options;
+    fio_virtual_printer *printer;
+    fio_machine_counts counts;
+    double now;
+    bool plugged, dtr, rts;
+    int64_t host_rate; /* 0: never set, taken to be right */
+
+    fio_wire in, out;
+    /* Received and not yet read: the byte, and FIO_TAINT if it is not what was sent there. */
+    uint16_t received[FIO_RECEIVE_MOST];
+    unsigned received_first, received_last;
+    bool lost_before; /* bytes were lost before the next one received */
+    fio_reader reader;
+    bool line_tainted;
+    fio_emergency_parser emergency;
+
+    fio_queued queue[FIO_SLOTS_MOST];
+    int queued, oldest;
+    fio_line line; /* of queue[oldest], being executed */
+    fio_processor processor;
+    double until, busy_at, busy_seconds;
+    double wait_report_at;
+    double temperature_seconds, temperature_at; /* M155; 0: off */
+    double position_seconds, position_at;       /* M154 */
+
+    fio_random random;                  /* of the faults */
+    int line_length, last_line_length;  /* bytes of the line now arriving, and of the one before */
+    int damage_at, lose_at, lose_count; /* where in it; -1: nowhere */
+    int held;
+    fio_late late[FIO_HELD_MOST];
+};
+
+#define FIO_TAINT 0x100
+
+/* firmware.c: do all that is due at `now`. */
+void fio_firmware_step(fio_machine *machine);
+/* When something is due of itself; INFINITY: nothing. */
+double fio_firmware_next(const fio_machine *machine);
+void fio_firmware_reset(fio_machine *machine);
+void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted);
+bool fio_firmware_may_receive(const fio_machine *machine); /* there is room */
+void fio_firmware_kill(fio_machine *machine, const char *error);
+void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict);
+
+/* firmware_command.c: what the firmware answers without the printer; false: not its own. */
+bool fio_firmware_command(void *machine, const fio_line *line);
+void fio_firmware_reports(fio_machine *machine); /* what is due of itself */
+double fio_firmware_next_report(const fio_machine *machine);
+
+/* firmware_answer.c */
+void fio_firmware_say(fio_machine *machine, const char *text);
+void fio_firmware_reply(void *machine, const char *text, size_t length);
+void fio_firmware_ok(fio_machine *machine);
+
+/* fault.c: a byte comes to the end of the wire, an answer goes out. */
+void fio_fault_byte(fio_machine *machine, uint8_t byte);
+void fio_fault_answer(fio_machine *machine, const char *text, size_t length, bool ok);
+/* Keep an answer back; false if there is no room. Those that are due go out by release(). */
+bool fio_fault_hold(fio_machine *machine, const char *text, size_t length, double seconds);
+double fio_fault_next(const fio_machine *machine);
+void fio_fault_release(fio_machine *machine);
+
+#endif
