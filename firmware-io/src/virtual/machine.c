@@ -206,6 +206,14 @@ void fio_machine_set_rate(fio_machine *machine, double now, int64_t rate) {
     machine->host_rate = rate;
 }
 
+bool fio_machine_working(const fio_machine *machine) {
+    if (machine->processor == FIO_HALTED)
+        return fio_wire_waiting(&machine->out) > 0;
+    return fio_wire_waiting(&machine->in) > 0 || fio_wire_waiting(&machine->out) > 0 ||
+           machine->processor != FIO_IDLE || machine->queued > 0 || machine->held > 0 ||
+           fio_printer_next(machine->printer) < INFINITY;
+}
+
 bool fio_machine_plugged(const fio_machine *machine) {
     return machine->plugged;
 }
