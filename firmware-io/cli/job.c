@@ -1,0 +1,166 @@
+#include "job.h"
+
+#include <inttypes.h>
+#include <poll.h>
+#include <string.h>
+
+#include "protocol/encode.h"
+#include "signals.h"
+
+enum { SIGNALS_EVERY = 4096 }; /* commands */
+
+/* What would spoil the numbers of the lines, or the job itself, wherever it stands in it. */
+static const struct {
+    const char *command, *why;
+} forbidden[] = {
+    {"M28", "it would write the rest to the printer's card"},
+    {"M29", "it belongs to writing on the printer's card"},
+    {"M110", "the numbers of the lines are the host's"},
+    {"M112", "it is the emergency stop"},
+    {"M410", "it would throw away moves before it"},
+};
+
+static bool is_command(const char *name, const fio_source_command *command) {
+    size_t length = strlen(name);
+    return command->length >= length && !memcmp(command->text, name, length) &&
+           !(command->text[length] >= '0' && command->text[length] <= '9') &&
+           command->text[length] != '.';
+}
+
+/* A line that Marlin would cut at its 95 bytes, or that is forbidden. */
+static fio_status check_command(const fio_job *job, const fio_source_command *command) {
+    char wire[FIO_WIRE_LINE_MOST + 1];
+    for (size_t i = 0; i < sizeof forbidden / sizeof *forbidden; i++)
+        if (is_command(forbidden[i].command, command))
+            return fio_fail(FIO_FAULTY, "%s:%" PRId64 ": a job must not hold %s: %s", job->name,
+                            command->line, forbidden[i].command, forbidden[i].why);
+    if (command->length > 64 &&
+        fio_encode_line(wire, command->index + 1, command->text, command->length, 95) == 0)
+        return fio_fail(FIO_FAULTY,
+                        "%s:%" PRId64
+                        ": %zu bytes are too long for a command: firmwares keep 95 of "
+                        "a line, its number and checksum included",
+                        job->name, command->line, command->length);
+    return FIO_OK;
+}
+
+static fio_status fail_empty(const fio_job *job) {
+    return fio_fail(FIO_UNREADABLE, "%s: there is no command in it", job->name);
+}
+
+static fio_status check_file(fio_job *job) {
+    fio_source_command command;
+    fio_source_result result;
+    int64_t count = 0;
+    while ((result = fio_source_next(job->source, &command)) == FIO_SOURCE_COMMAND) {
+        fio_status status = check_command(job, &command);
+        if (status == FIO_OK && ++count % SIGNALS_EVERY == 0)
+            status = fio_signals_check();
+        if (status != FIO_OK)
+            return status;
+    }
+    if (result == FIO_SOURCE_FAILED)
+        return FIO_UNREADABLE;
+    return count == 0 ? fail_empty(job) : fio_source_seek(job->source, 0);
+}
+
+static fio_source_result next(fio_job *job, fio_source_command *command) {
+    if (job->peeked) {
+        job->peeked = false;
+        *command = job->first;
+        if (command->index >= job->skip)
+            return FIO_SOURCE_COMMAND;
+    }
+    fio_source_result result;
+    do
+        result = fio_source_next(job->source, command);
+    while (result == FIO_SOURCE_COMMAND && command->index < job->skip);
+    job->waits = result == FIO_SOURCE_LATER;
+    if (result == FIO_SOURCE_FAILED)
+        job->failure = FIO_UNREADABLE;
+    if (result != FIO_SOURCE_COMMAND || !job->is_pipe)
+        return result;
+    job->failure = check_command(job, command);
+    return job->failure == FIO_OK ? FIO_SOURCE_COMMAND : FIO_SOURCE_FAILED;
+}
+
+/* Nothing is sent, no port is opened, before the one at the other end has something to print. */
+static fio_status wait_for_first(fio_job *job) {
+    for (;;) {
+        fio_source_result result = next(job, &job->first);
+        if (result == FIO_SOURCE_COMMAND) {
+            job->peeked = true;
+            return FIO_OK;
+        }
+        if (result != FIO_SOURCE_LATER)
+            return result == FIO_SOURCE_END ? fail_empty(job) : job->failure;
+        struct pollfd polls[2] = {{fio_source_descriptor(job->source), POLLIN, 0},
+                                  {fio_signals_descriptor(), POLLIN, 0}};
+        poll(polls, 2, -1);
+        fio_status status = fio_signals_check();
+        if (status != FIO_OK)
+            return status;
+    }
+}
+
+fio_status fio_job_open(fio_job *job, const char *path) {
+    *job = (fio_job){.is_pipe = !strcmp(path, "-")};
+    job->name = job->is_pipe ? "standard input" : path;
+    fio_status status = fio_source_open(&job->source, path);
+    if (status == FIO_OK)
+        status = job->is_pipe ? wait_for_first(job) : check_file(job);
+    if (status != FIO_OK)
+        fio_job_close(job);
+    return status;
+}
+
+void fio_job_close(fio_job *job) {
+    fio_source_close(job->source);
+    job->source = NULL;
+}
+
+fio_source_result fio_job_next(void *context, fio_source_command *command) {
+    fio_job *job = context;
+    fio_source_result result = next(job, command);
+    if (result == FIO_SOURCE_COMMAND) {
+        job->lines[command->index % FIO_JOB_LINES] = command->line;
+        job->given = command->index + 1;
+    }
+    return result;
+}
+
+int64_t fio_job_line_of(const fio_job *job, int64_t index) {
+    if (index < job->given)
+        return job->lines[index % FIO_JOB_LINES];
+    return job->given > 0 ? job->lines[(job->given - 1) % FIO_JOB_LINES] + 1 : 1;
+}
+
+fio_status fio_job_seek(void *context, int64_t index) {
+    fio_job *job = context;
+    if (!job->is_pipe)
+        return fio_source_seek(job->source, index);
+    job->skip = index; /* only ever forward: a pipe is resumed before its first command is given */
+    return FIO_OK;
+}
+
+fio_status fio_job_find_line(fio_job *job, int64_t line, fio_stream_resume *resume) {
+    fio_source_command command;
+    fio_source_result result;
+    fio_track track;
+    fio_track_reset(&track);
+    while ((result = fio_source_next(job->source, &command)) == FIO_SOURCE_COMMAND &&
+           command.line < line)
+        fio_track_follow(&track, command.text, command.length);
+    if (result == FIO_SOURCE_FAILED)
+        return FIO_UNREADABLE;
+    if (result == FIO_SOURCE_END)
+        return fio_fail(FIO_USAGE, "%s: there is no command from line %" PRId64 " on", job->name,
+                        line);
+    *resume = (fio_stream_resume){.accepted = command.index,
+                                  .sent = command.index,
+                                  .number = -1,
+                                  .made = command.index,
+                                  .track = track,
+                                  .track_made = track};
+    return fio_source_seek(job->source, 0);
+}

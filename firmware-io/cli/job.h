@@ -1,0 +1,41 @@
+/* The job: a source of commands, looked at before and while it is printed. */
+#ifndef FIO_CLI_JOB_H
+#define FIO_CLI_JOB_H
+
+#include <stdbool.h>
+
+#include "stream/streamer.h"
+
+enum { FIO_JOB_LINES = 1024 }; /* more than are ever under way: a power of 2 */
+
+typedef struct fio_job {
+    fio_source *source;
+    const char *name; /* for messages */
+    bool is_pipe;
+    bool waits;         /* there was nothing to read the last time: watch the descriptor */
+    bool peeked;        /* `first` has been read and not yet been given out */
+    fio_status failure; /* why next() gave FIO_SOURCE_FAILED */
+    int64_t skip;       /* commands below this index are passed over */
+    fio_source_command first;
+    int64_t lines[FIO_JOB_LINES]; /* of the last commands given out, by their index */
+    int64_t given;                /* index behind the last one; 0: none */
+} fio_job;
+
+/* `path` "-": standard input, of which the first command is waited for; otherwise the whole file is
+ * gone through. FIO_UNREADABLE if it can't be read or holds no command, FIO_FAULTY if it holds what
+ * a job must not do, FIO_CANCELLED if a signal comes meanwhile. */
+fio_status fio_job_open(fio_job *job, const char *path) FIO_MUST_CHECK;
+void fio_job_close(fio_job *job);
+
+/* For the streamer. `context` is the job. */
+fio_source_result fio_job_next(void *context, fio_source_command *command);
+fio_status fio_job_seek(void *context, int64_t index);
+
+/* Where to go on to begin with this line: FIO_USAGE if there is no command from there on. Leaves
+ * the job at its beginning. Not for pipes. */
+fio_status fio_job_find_line(fio_job *job, int64_t line, fio_stream_resume *resume) FIO_MUST_CHECK;
+
+/* The line of a command that was given out not long ago, or of the one behind the last. */
+int64_t fio_job_line_of(const fio_job *job, int64_t index);
+
+#endif
