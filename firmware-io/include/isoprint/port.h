@@ -10,6 +10,7 @@ extern "C" {
 
 typedef struct fio_port {
     char name[128];  /* what fio_port_open() takes: "usb:2341:0042:SERIAL", "tty:/dev/ttyACM0" */
+    char tty[64];    /* of a USB device: what the kernel calls the same port; "" */
     char driver[16]; /* "cdc-acm", "ch341", "ftdi", "cp210x", "pl2303", "tty" */
     char board[64];  /* "Arduino Mega 2560", or the device's own product name */
     char serial[64]; /* "" if it has none */
@@ -28,13 +29,17 @@ typedef struct fio_port_options {
 FIO_API fio_port_options fio_port_options_defaults(void);
 
 /* All serial ports that a printer may be behind, certain ones first, then in order of their names.
- * *ports is the caller's, to be freed with fio_ports_free(). Opens none of them. Up to 1 s. */
+ * A tty that belongs to a USB device of the list is not listed again, unless it may be opened where
+ * the USB device may not. Devices alike in everything are told apart by where they are plugged in:
+ * "usb:1a86:7523@1-2.3". *ports is the caller's, to be freed with fio_ports_free(), NULL if there
+ * are none. Opens none of them. Up to 1 s. */
 FIO_API fio_status fio_ports_list(fio_port **ports, int *count) FIO_MUST_CHECK;
-FIO_API void fio_ports_free(fio_port *ports);
+FIO_API void fio_ports_free(fio_port *ports); /* NULL is fine */
 
 /* Open by name:
  *   auto                    the only certain port, or else the only port there is
  *   usb:VID:PID[:SERIAL]    through libusb, four hexadecimal digits each
+ *   usb:VID:PID@PLACE       by bus and port numbers, as the kernel writes them: 1-2.3
  *   tty:PATH                a serial device or a pseudo terminal
  *   socket:PATH, tcp:HOST:PORT
  *   virtual[:SCRIPT]        a printer in memory, that follows a script of faults
