@@ -130,7 +130,6 @@ static void test_cp2102(void) {
                             {0x41, 0x1e, 0, 0, 4, {0x00, 0xc2, 0x01, 0x00}},
                             {0x41, 0x03, 0x0800, 0, 0, {0}},
                             {0x41, 0x19, 0, 0, 6, {0, 0, 0, 0, 0x11, 0x13}},
-                            {0xc1, 0x14, 0, 0, 16, {0}},
                             {0x41, 0x13, 0, 0, 16, {1, 0, 0, 0, 0x40}},
                             {0x41, 0x07, 0x0303, 0, 0, {0}},
                         }));
@@ -144,22 +143,24 @@ static void test_cp2102(void) {
                         }));
 }
 
-/* A handshake left from before is switched off; the lines stay as they are. */
+/* Flow control drives the lines too: it is told what they are. */
 static void test_cp2102_with_its_lines_kept(void) {
-    static const answer answers[] = {
-        {0xc0, 0xff, 0x370b, false, 1, {2}},
-        {0xc1, 0x14, 0, false, 16, {0x09, 0, 0, 0, 0x83, 0, 0, 0, 0x80, 0, 0, 0, 0x80}}};
-    recorder device = {.answers = answers, .answer_count = 2, .fail_at = -1};
-    fio_serial serial = plug(&device, cp2102, 64);
-    CHECK_EQUAL(FIO_OK, serial.driver->open(&serial, 115200, false));
-    CHECK_EQUAL(7, device.count);
-    CHECK_EQUAL(0x13, device.seen[6].request);
-    CHECK_EQUAL(1, device.seen[6].data[0]); /* DTR on and no handshake by CTS */
-    CHECK_EQUAL(0, device.seen[6].data[4]); /* RTS no handshake's, XON and XOFF off */
-    device.count = 0;
-    CHECK_EQUAL(FIO_OK, serial.driver->close(&serial));
-    CHECK_EQUAL(2, device.count);
-    CHECK_EQUAL(0x12, device.seen[0].request);
+    for (int lines = 0; lines < 4; lines++) {
+        const answer answers[] = {{0xc0, 0xff, 0x370b, false, 1, {2}},
+                                  {0xc1, 0x08, 0, false, 1, {(uint8_t)(0xb0 | lines)}}};
+        recorder device = {.answers = answers, .answer_count = 2, .fail_at = -1};
+        fio_serial serial = plug(&device, cp2102, 64);
+        CHECK_EQUAL(FIO_OK, serial.driver->open(&serial, 115200, false));
+        CHECK_EQUAL(7, device.count);
+        CHECK_EQUAL(0x08, device.seen[5].request);
+        CHECK_EQUAL(0x13, device.seen[6].request);
+        CHECK_EQUAL(lines & 1, device.seen[6].data[0]);
+        CHECK_EQUAL((lines & 2) << 5, device.seen[6].data[4]);
+        device.count = 0;
+        CHECK_EQUAL(FIO_OK, serial.driver->close(&serial));
+        CHECK_EQUAL(2, device.count);
+        CHECK_EQUAL(0x12, device.seen[0].request);
+    }
 }
 
 static void test_pl2303hxn(void) {

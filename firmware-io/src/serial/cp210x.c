@@ -11,9 +11,9 @@ enum {
     INTERFACE_ENABLE = 0x00,
     SET_LINE = 0x03,
     SET_MODEM = 0x07,
+    GET_MODEM = 0x08,
     PURGE = 0x12,
     SET_FLOW = 0x13,
-    GET_FLOW = 0x14,
     SET_CHARACTERS = 0x19,
     SET_RATE = 0x1e,
     VENDOR_SPECIFIC = 0xff,
@@ -107,20 +107,21 @@ static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
     return FIO_OK;
 }
 
-/* No handshake of any kind, whatever was set before; the two lines are the host's, and are left
- * as they are where they must not rise. */
+/* No handshake of any kind, whatever was set before. This drives the two lines too; where they must
+ * not rise, they are set to what they are. */
 static fio_status set_flow(const fio_serial *serial, bool raise_lines) {
-    uint8_t flow[16] = {0};
-    bool answered = false;
-    fio_request ask = request(serial, GET_FLOW, 0, sizeof flow);
-    ask.type = FROM_INTERFACE;
-    fio_status status = fio_serial_ask(serial, ask, flow, &answered);
+    uint8_t flow[16] = {0}, lines = DTR | RTS;
+    bool answered = true;
+    fio_status status = FIO_OK;
+    if (!raise_lines) {
+        fio_request ask = request(serial, GET_MODEM, 0, 1);
+        ask.type = FROM_INTERFACE;
+        status = fio_serial_ask(serial, ask, &lines, &answered);
+    }
     if (status != FIO_OK)
         return status;
-    uint8_t dtr = answered ? flow[0] & 3 : 0, rts = answered ? flow[4] & 0xc0 : 0;
-    memset(flow, 0, sizeof flow);
-    flow[0] = raise_lines ? 0x01 : dtr & 1;    /* 2 would be a handshake */
-    flow[4] = raise_lines ? 0x40 : rts & 0x40; /* 80 would be a handshake */
+    flow[0] = answered && (lines & DTR) ? 0x01 : 0;
+    flow[4] = answered && (lines & RTS) ? 0x40 : 0;
     return fio_serial_send(serial, request(serial, SET_FLOW, 0, sizeof flow), flow);
 }
 

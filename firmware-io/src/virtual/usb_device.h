@@ -25,7 +25,8 @@ void fio_virtual_usb_free(fio_virtual_usb *device); /* the machine stays the cal
 
 /* Device and configuration descriptors, as the kernel keeps them in sysfs. */
 const uint8_t *fio_virtual_usb_descriptors(const fio_virtual_usb *device, size_t *size);
-const char *fio_virtual_usb_string(const fio_virtual_usb *device, int index);
+const char *fio_virtual_usb_string(const fio_virtual_usb *device, int index); /* 1, 2, 3; NULL */
+bool fio_virtual_usb_high_speed(const fio_virtual_usb *device); /* 480 Mbit/s instead of 12 */
 
 enum { FIO_USB_STALL = -1, FIO_USB_NAK = -2, FIO_USB_GONE = -3 };
 
