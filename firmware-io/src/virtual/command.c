@@ -225,7 +225,7 @@ void fio_printer_say_position(fio_virtual_printer *printer) {
 
 static void say_heater(fio_text *text, const char *name, const fio_heater *heater, double time) {
     fio_text_string(text, name);
-    fio_text_number(text, fio_heater_at(heater, time), 2);
+    fio_text_number(text, fio_heater_reading(heater, time), 2);
     fio_text_string(text, " /");
     fio_text_number(text, heater->target, 2);
 }

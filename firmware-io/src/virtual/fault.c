@@ -28,9 +28,19 @@ static void begin_line(fio_machine *machine) {
     const fio_machine_faults *faults = &machine->options.faults;
     int length = machine->last_line_length > 0 ? machine->last_line_length : 16;
     machine->damage_at = machine->lose_at = -1;
-    if (fio_random_chance(&machine->random, faults->flip_in))
+    bool flips = fio_random_chance(&machine->random, faults->flip_in);
+    if (machine->plan.flip_lines > 0) {
+        machine->plan.flip_lines--;
+        flips = true;
+    }
+    if (flips)
         machine->damage_at = fio_random_below(&machine->random, length);
-    if (fio_random_chance(&machine->random, faults->lose_bytes_in)) {
+    bool loses = fio_random_chance(&machine->random, faults->lose_bytes_in);
+    if (machine->plan.cut_lines > 0) {
+        machine->plan.cut_lines--;
+        loses = true;
+    }
+    if (loses) {
         machine->lose_at = fio_random_below(&machine->random, length);
         machine->lose_count = 1 + fio_random_below(&machine->random, 8);
         machine->counts.faults++;
@@ -41,6 +51,11 @@ void fio_fault_byte(fio_machine *machine, uint8_t byte) {
     const fio_machine_faults *faults = &machine->options.faults;
     bool end = byte == '\n', lost = false;
     uint8_t arrived = byte;
+    fio_script_happens(machine, FIO_AT_BYTE, (double)++machine->bytes_arrived);
+    if (!machine->plugged) {
+        machine->lost_before = true;
+        return;
+    }
     if (machine->line_length == 0)
         begin_line(machine);
     int at = machine->line_length++;
@@ -90,22 +105,41 @@ static void put_line(fio_machine *machine, const char *text, size_t length) {
     }
 }
 
+/* True if something befalls it: by chance, or because the script has ordered some of these. */
+static bool befalls(fio_machine *machine, double chance, double *ordered) {
+    bool hit = fio_random_chance(&machine->random, chance);
+    if (*ordered > 0) {
+        --*ordered;
+        hit = true;
+    }
+    machine->counts.faults += hit;
+    return hit;
+}
+
+static bool is_late(fio_machine *machine, const char *text, size_t length) {
+    fio_plan *plan = &machine->plan;
+    bool ordered = plan->late_oks > 0;
+    double seconds = ordered ? plan->late_seconds : machine->options.faults.late_seconds;
+    return befalls(machine, machine->options.faults.late_ok, &plan->late_oks) &&
+           fio_fault_hold(machine, text, length, seconds);
+}
+
 void fio_fault_answer(fio_machine *machine, const char *text, size_t length, bool ok) {
     const fio_machine_faults *faults = &machine->options.faults;
-    if (ok && fio_random_chance(&machine->random, faults->lose_ok)) {
-        machine->counts.faults++;
-        return;
+    fio_plan *plan = &machine->plan;
+    if (ok) {
+        fio_script_happens(machine, FIO_AT_OK, (double)machine->counts.oks);
+        if (plan->reset || plan->halt)
+            return; /* it came too late for this ok */
     }
-    if (ok && fio_random_chance(&machine->random, faults->late_ok) &&
-        fio_fault_hold(machine, text, length, faults->late_seconds)) {
-        machine->counts.faults++;
+    if (machine->now < plan->mute_until || befalls(machine, 0, &plan->lose_answers))
         return;
-    }
+    if (ok &&
+        (befalls(machine, faults->lose_ok, &plan->lose_oks) || is_late(machine, text, length)))
+        return;
     put_line(machine, text, length);
-    if (ok && fio_random_chance(&machine->random, faults->double_ok)) {
-        machine->counts.faults++;
+    if (ok && befalls(machine, faults->double_ok, &plan->double_oks))
         put_line(machine, text, length);
-    }
 }
 
 /* Late answers are kept in order of the time they are due. */

@@ -26,7 +26,7 @@ void fio_firmware_reset(fio_machine *machine) {
     fio_wire_discard(&machine->out, machine->now);
 }
 
-static void emergency(fio_machine *machine, fio_emergency what) {
+void fio_firmware_emergency(fio_machine *machine, fio_emergency what) {
     fio_virtual_printer *printer = machine->printer;
     switch (what) {
     case FIO_EMERGENCY_KILL:
@@ -34,7 +34,9 @@ static void emergency(fio_machine *machine, fio_emergency what) {
         fio_firmware_kill(machine, NULL);
         break;
     case FIO_EMERGENCY_STOP:
+        fio_printer_advance(printer, machine->now);
         fio_printer_abandon(printer);
+        printer->arc.next = printer->arc.chords + 1;
         break;
     case FIO_EMERGENCY_BREAK:
     case FIO_EMERGENCY_ANSWER:
@@ -74,7 +76,7 @@ void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted) {
     if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED)
         return;
     if (machine->options.emergency_parser) {
-        emergency(machine, fio_emergency_feed(&machine->emergency, (char)byte));
+        fio_firmware_emergency(machine, fio_emergency_feed(&machine->emergency, (char)byte));
         if (machine->processor == FIO_HALTED)
             return;
     }
@@ -103,7 +105,7 @@ void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict) {
     machine->received_first = machine->received_last;
     text = fio_text_in(bytes, sizeof bytes);
     fio_text_string(&text, "Resend: ");
-    fio_text_integer(&text, printer->last_number + 1);
+    fio_text_integer(&text, printer->last_number + 1 + machine->plan.miscount);
     fio_firmware_say(machine, bytes);
     machine->counts.resends++;
     machine->counts.oks++;
@@ -116,17 +118,26 @@ static void act_early(fio_machine *machine, const char *text) {
     if (machine->options.emergency_parser)
         return;
     if (!strncmp(text, "M108", 4))
-        emergency(machine, FIO_EMERGENCY_BREAK);
+        fio_firmware_emergency(machine, FIO_EMERGENCY_BREAK);
     if (!strncmp(text, "M112", 4))
-        emergency(machine, FIO_EMERGENCY_KILL);
+        fio_firmware_emergency(machine, FIO_EMERGENCY_KILL);
     if (!strncmp(text, "M410", 4))
-        emergency(machine, FIO_EMERGENCY_STOP);
+        fio_firmware_emergency(machine, FIO_EMERGENCY_STOP);
 }
 
 static void take_line(fio_machine *machine) {
     fio_reader *reader = &machine->reader;
     fio_virtual_printer *printer = machine->printer;
     machine->counts.lines_in++;
+    fio_script_happens(machine, FIO_AT_LINE, (double)machine->counts.lines_in);
+    if (machine->plan.reset || machine->plan.halt)
+        return;
+    if (machine->plan.reject_lines > 0) {
+        machine->plan.reject_lines--;
+        fio_firmware_reject(machine, FIO_LINE_CHECKSUM);
+        return;
+    }
+    int64_t before = printer->last_number;
     fio_line_verdict verdict =
         fio_line_check(reader->text, &printer->last_number, machine->options.case_insensitive);
     if (verdict == FIO_LINE_REPEATED) {
@@ -137,6 +148,8 @@ static void take_line(fio_machine *machine) {
         fio_firmware_reject(machine, verdict);
         return;
     }
+    if (printer->last_number != before)
+        fio_script_happens(machine, FIO_AT_NUMBER, (double)printer->last_number);
     act_early(machine, reader->text);
     if (machine->processor == FIO_HALTED)
         return;
@@ -150,8 +163,8 @@ static void take_line(fio_machine *machine) {
 }
 
 static void read_lines(fio_machine *machine) {
-    while (machine->queued < machine->options.command_slots &&
-           machine->received_first != machine->received_last) {
+    while (machine->queued < machine->options.command_slots && !machine->plan.reset &&
+           !machine->plan.halt && machine->received_first != machine->received_last) {
         uint16_t got = machine->received[machine->received_first++ & (FIO_RECEIVE_MOST - 1)];
         if (got & FIO_TAINT)
             machine->line_tainted = true;
@@ -167,6 +180,9 @@ static void begin(fio_machine *machine) {
     fio_virtual_printer *printer = machine->printer;
     fio_queued *queued = &machine->queue[machine->oldest];
     printer->arc.next = printer->arc.chords + 1;
+    machine->answered = machine->plan.ok_first && !queued->silent;
+    if (machine->answered)
+        fio_firmware_ok(machine);
     fio_printer_next_line(printer, fio_firmware_reply, machine);
     int64_t unknown = printer->statistics.unknown_commands;
     fio_printer_begin(printer, &machine->line, queued->cut);
@@ -185,7 +201,7 @@ static void begin(fio_machine *machine) {
 static void finish(fio_machine *machine) {
     fio_virtual_printer *printer = machine->printer;
     fio_printer_end_entry(printer);
-    if (!machine->queue[machine->oldest].silent && !printer->answered)
+    if (!machine->queue[machine->oldest].silent && !printer->answered && !machine->answered)
         fio_firmware_ok(machine);
     machine->oldest = (machine->oldest + 1) % machine->options.command_slots;
     machine->queued--;
@@ -213,6 +229,9 @@ static unsigned backlog(const fio_machine *machine, unsigned *most) {
 static bool turn(fio_machine *machine) {
     fio_virtual_printer *printer = machine->printer;
     unsigned most;
+    fio_script_pass(machine);
+    if (machine->now < machine->plan.silent_until)
+        return false;
     switch (machine->processor) {
     case FIO_BOOTING:
         if (machine->now < machine->until)
@@ -222,10 +241,10 @@ static bool turn(fio_machine *machine) {
     case FIO_IDLE:
         read_lines(machine);
         if (machine->processor != FIO_IDLE || machine->queued == 0 ||
-            backlog(machine, &most) > most)
+            machine->now < machine->plan.busy_until || backlog(machine, &most) > most)
             return false;
         machine->processor = FIO_WORKING;
-        machine->until = machine->now + machine->options.line_seconds;
+        machine->until = machine->now + machine->options.line_seconds + machine->plan.throttle;
         return true;
     case FIO_WORKING:
         if (machine->now < machine->until)
@@ -267,7 +286,7 @@ static bool turn(fio_machine *machine) {
 
 static bool works_long(const fio_machine *machine) {
     return machine->processor == FIO_BLOCKED || machine->processor == FIO_CHORDS ||
-           machine->processor == FIO_WAITING;
+           machine->processor == FIO_WAITING || machine->now < machine->plan.busy_until;
 }
 
 static void say_busy(fio_machine *machine) {
@@ -298,6 +317,9 @@ void fio_firmware_step(fio_machine *machine) {
     fio_fault_release(machine);
     if (machine->processor == FIO_HALTED || machine->processor == FIO_BOOTING)
         return;
+    fio_thermal_check(machine);
+    if (machine->processor == FIO_HALTED || machine->now < machine->plan.silent_until)
+        return;
     say_busy(machine);
     report_heating(machine);
     fio_firmware_reports(machine);
@@ -311,8 +333,14 @@ static double next_turn(const fio_machine *machine) {
     case FIO_WORKING:
         return machine->until;
     case FIO_IDLE:
+        if (machine->queued == 0)
+            return INFINITY;
+        if (machine->now < machine->plan.busy_until)
+            return machine->plan.busy_until;
         waiting = backlog(machine, &most);
-        if (machine->queued == 0 || machine->out.byte_seconds == 0 || waiting <= most)
+        if (waiting <= most)
+            return machine->now; /* the host has just made room */
+        if (machine->out.byte_seconds == 0)
             return INFINITY;
         return machine->now + (waiting - most + 1) * machine->out.byte_seconds;
     case FIO_BLOCKED:
@@ -325,11 +353,21 @@ static double next_turn(const fio_machine *machine) {
     }
 }
 
-double fio_firmware_next(const fio_machine *machine) {
-    double next = fmin(next_turn(machine), fio_fault_next(machine));
+/* Of what the processor does, which a silent one does not. */
+static double next_work(const fio_machine *machine) {
+    double next = next_turn(machine);
+    if (machine->processor == FIO_HALTED || machine->processor == FIO_BOOTING)
+        return next;
     if (works_long(machine) && machine->busy_seconds > 0)
         next = fmin(next, machine->busy_at);
+    return fmin(next, fio_firmware_next_report(machine));
+}
+
+double fio_firmware_next(const fio_machine *machine) {
+    double next = next_work(machine);
+    if (machine->now < machine->plan.silent_until)
+        next = fmax(next, machine->plan.silent_until);
     if (machine->processor != FIO_HALTED && machine->processor != FIO_BOOTING)
-        next = fmin(next, fio_firmware_next_report(machine));
-    return next;
+        next = fmin(next, fio_thermal_next(machine));
+    return fmin(next, fmin(fio_fault_next(machine), fio_script_next(machine)));
 }

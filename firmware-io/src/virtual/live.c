@@ -7,6 +7,7 @@
  * them, or this late (BLOCK_DELAY_FOR_1ST_MOVE). */
 #define FIRST_BLOCK_DELAY 0.1 /* s */
 #define BLOCKS_TO_BEGIN 3
+#define ROUNDING 1e-6 /* °C */
 
 void fio_printer_live(fio_virtual_printer *printer, double now) {
     printer->live = true;
@@ -107,10 +108,9 @@ void fio_printer_end_wait(fio_virtual_printer *printer) {
                       printer->clock - printer->wait_start, printer->wait_activity);
     if (!heater)
         return;
-    bool reached = printer->clock >= printer->wait_end && heater->target > heater->room;
     fio_heater_set(heater, printer->clock, heater->target);
-    if (reached && heater->temperature < heater->target)
-        heater->temperature = heater->target; /* but for rounding it is there */
+    if (heater->target > 0 && fabs(heater->temperature - heater->target) < ROUNDING)
+        heater->temperature = heater->target;
 }
 
 void fio_printer_run_out(fio_virtual_printer *printer) {

@@ -6,7 +6,8 @@
 
 #include "base/memory.h"
 
-#define BITS_PER_BYTE 10 /* a start bit, eight, a stop bit */
+#define MERGE_SECONDS 0.016 /* FTDI's latency timer, as it is set from the factory */
+#define BITS_PER_BYTE 10    /* a start bit, eight, a stop bit */
 
 fio_machine_options fio_machine_options_defaults(void) {
     return (fio_machine_options){
@@ -71,6 +72,12 @@ fio_status fio_machine_create(fio_machine **machine, const fio_machine_options *
     }
     made->options = *options;
     made->options.script = NULL; /* the caller's text need not stay */
+    made->plan.plug_at = INFINITY;
+    status = fio_script_read(&made->script, options->script ? options->script : "");
+    if (status != FIO_OK) {
+        fio_machine_free(made);
+        return status;
+    }
     made->random.state = options->seed;
     made->plugged = true;
     made->in.byte_seconds = made->out.byte_seconds =
@@ -110,6 +117,18 @@ static bool deliver(fio_machine *machine, double limit) {
     return false;
 }
 
+/* What has left the firmware arrives at the host; sometimes it is kept to be put together with what
+ * comes after it, as the latency timers of serial bridges do. */
+static void arrive(fio_machine *machine) {
+    fio_wire *out = &machine->out;
+    bool empty = fio_wire_readable(out) == 0;
+    while (fio_wire_next(out) <= machine->now)
+        fio_wire_arrive(out);
+    if (empty && fio_wire_readable(out) > 0 &&
+        fio_random_chance(&machine->random, machine->options.faults.merge))
+        machine->merged_until = machine->now + MERGE_SECONDS;
+}
+
 void fio_machine_advance(fio_machine *machine, double now) {
     if (!(now > machine->now)) /* also of a time that is none */
         now = machine->now;
@@ -126,14 +145,15 @@ void fio_machine_advance(fio_machine *machine, double now) {
     }
     machine->now = now;
     fio_printer_advance(machine->printer, now);
-    while (fio_wire_next(&machine->out) <= now)
-        fio_wire_arrive(&machine->out);
+    arrive(machine);
 }
 
 double fio_machine_next(const fio_machine *machine) {
     if (fio_machine_readable(machine))
         return machine->now;
     double next = fmin(fio_firmware_next(machine), fio_wire_line(&machine->out));
+    if (fio_wire_readable(&machine->out) > 0)
+        next = fmin(next, machine->merged_until);
     if (machine->in.byte_seconds || fio_firmware_may_receive(machine))
         next = fmin(next, fio_wire_line(&machine->in));
     return fmax(next, machine->now);
@@ -166,7 +186,7 @@ size_t fio_machine_write(fio_machine *machine, double now, const void *bytes, si
 }
 
 bool fio_machine_readable(const fio_machine *machine) {
-    return machine->plugged && fio_wire_readable(&machine->out) > 0;
+    return fio_wire_readable(&machine->out) > 0 && machine->now >= machine->merged_until;
 }
 
 size_t fio_machine_read(fio_machine *machine, double now, void *bytes, size_t capacity) {
@@ -176,6 +196,10 @@ size_t fio_machine_read(fio_machine *machine, double now, void *bytes, size_t ca
     fio_wire *out = &machine->out;
     size_t count = fio_wire_readable(out);
     count = count < capacity ? count : capacity;
+    machine->splitting = count > 1 && !machine->splitting &&
+                         fio_random_chance(&machine->random, machine->options.faults.split);
+    if (machine->splitting)
+        count = 1 + (size_t)fio_random_below(&machine->random, (int)count - 1);
     for (size_t i = 0; i < count; i++)
         ((uint8_t *)bytes)[i] = fio_wire_at(out, out->first++);
     machine->counts.bytes_out += (int64_t)count;
@@ -211,16 +235,27 @@ bool fio_machine_working(const fio_machine *machine) {
         return fio_wire_waiting(&machine->out) > 0;
     return fio_wire_waiting(&machine->in) > 0 || fio_wire_waiting(&machine->out) > 0 ||
            machine->processor != FIO_IDLE || machine->queued > 0 || machine->held > 0 ||
-           fio_printer_next(machine->printer) < INFINITY;
+           fio_wire_readable(&machine->out) > 0 || fio_printer_next(machine->printer) < INFINITY;
 }
 
 bool fio_machine_plugged(const fio_machine *machine) {
     return machine->plugged;
 }
 
+void fio_machine_unplug(fio_machine *machine) {
+    machine->plugged = machine->dtr = machine->rts = false;
+    machine->lost_before = machine->lost_before || fio_wire_waiting(&machine->in) > 0;
+    fio_wire_discard(&machine->in, machine->now);
+    fio_wire_discard(&machine->out, machine->now); /* what has arrived may still be read */
+    machine->merged_until = machine->now;
+}
+
 void fio_machine_plug(fio_machine *machine, double now) {
     fio_machine_advance(machine, now);
+    if (machine->plugged)
+        return;
     machine->plugged = true;
+    machine->out.first = machine->out.arrived;
 }
 
 fio_status fio_machine_finish(fio_machine *machine) {

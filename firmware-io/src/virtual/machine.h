@@ -7,6 +7,7 @@
 #include "virtual/printer.h"
 #include "virtual/random.h"
 #include "virtual/reader.h"
+#include "virtual/script.h"
 #include "virtual/wire.h"
 
 enum {
@@ -41,6 +42,22 @@ typedef struct fio_late {
     char text[120];
 } fio_late;
 
+/* What the script has ordered and is not yet done. */
+typedef struct fio_plan {
+    bool reset, ok_first;
+    const char *halt; /* the error, NULL: don't */
+    double plug_at, silent_until, mute_until, busy_until, throttle;
+    double lose_oks, double_oks, late_oks, late_seconds, lose_answers;
+    double flip_lines, cut_lines, reject_lines;
+    int64_t miscount;
+} fio_plan;
+
+/* Of one heater's thermal protection. */
+typedef struct fio_watch {
+    double target, at, temperature, runaway_at;
+    bool stable;
+} fio_watch;
+
 struct fio_machine {
     fio_machine_options options;
     fio_virtual_printer *printer;
@@ -61,6 +78,7 @@ struct fio_machine {
     fio_queued queue[FIO_SLOTS_MOST];
     int queued, oldest;
     fio_line line; /* of queue[oldest], being executed */
+    bool answered; /* its ok was said before it was executed */
     fio_processor processor;
     double until, busy_at, busy_seconds;
     double wait_report_at;
@@ -70,6 +88,13 @@ struct fio_machine {
     fio_random random;                  /* of the faults */
     int line_length, last_line_length;  /* bytes of the line now arriving, and of the one before */
     int damage_at, lose_at, lose_count; /* where in it; -1: nowhere */
+    bool splitting;                     /* the last read was cut: the next one is not */
+    double merged_until;                /* what has arrived is not shown before */
+    fio_plan plan;
+    fio_script script;
+    int64_t bytes_arrived;
+    double thermal_at;
+    fio_watch watches[FIO_TOOLS_MOST + 1]; /* the last is the bed's */
     int held;
     fio_late late[FIO_HELD_MOST];
 };
@@ -85,6 +110,21 @@ void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted);
 bool fio_firmware_may_receive(const fio_machine *machine); /* there is room */
 void fio_firmware_kill(fio_machine *machine, const char *error);
 void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict);
+
+/* M108 and the like, or a person at the machine. */
+void fio_firmware_emergency(fio_machine *machine, fio_emergency what);
+
+/* machine.c: the cable is pulled out. */
+void fio_machine_unplug(fio_machine *machine);
+
+/* script_run.c: the moment has come for the count-th time, or at this time. */
+void fio_script_happens(fio_machine *machine, fio_moment moment, double count);
+double fio_script_next(const fio_machine *machine); /* when time alone makes something happen */
+void fio_script_pass(fio_machine *machine);         /* do it, and what could not be done at once */
+
+/* thermal.c */
+void fio_thermal_check(fio_machine *machine);
+double fio_thermal_next(const fio_machine *machine);
 
 /* firmware_command.c: what the firmware answers without the printer; false: not its own. */
 bool fio_firmware_command(void *machine, const fio_line *line);
