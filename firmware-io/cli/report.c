@@ -40,9 +40,28 @@ static double printing_time(const fio_statistics *statistics) {
            statistics->time[FIO_RETRACTING] + statistics->time[FIO_LIFTING];
 }
 
-void report_summary(FILE *out, const char *name, const fio_virtual_printer *printer) {
-    const fio_statistics *statistics = fio_virtual_printer_statistics(printer);
-    fprintf(out, "%s on the virtual printer\n", name);
+static void link_summary(FILE *out, const report_subject *subject) {
+    const fio_machine_counts *counts = fio_machine_count(subject->machine);
+    fprintf(out, "  link     %lld bytes in, %lld out, %lld lines, %lld oks, %lld resends\n",
+            (long long)counts->bytes_in, (long long)counts->bytes_out, (long long)counts->lines_in,
+            (long long)counts->oks, (long long)counts->resends);
+    fprintf(out,
+            "  trouble  %lld faults injected, %lld undetectable, %lld bytes overrun, %lld resets, "
+            "%lld times starved\n",
+            (long long)counts->faults, (long long)counts->undetectable, (long long)counts->overruns,
+            (long long)counts->resets, (long long)counts->starved);
+    if (subject->bound_first)
+        fprintf(out, "  driver   Linux' own has %d of %d interfaces back\n", subject->bound_now,
+                subject->bound_first);
+    if (subject->check)
+        fprintf(out, "  check    %s: %s\n", subject->check,
+                subject->check_result ? subject->check_result
+                                      : "executed whole, each line once and in order");
+}
+
+static void summary(FILE *out, const report_subject *subject) {
+    const fio_statistics *statistics = fio_virtual_printer_statistics(subject->printer);
+    fprintf(out, "%s on the virtual printer\n", subject->name);
     fprintf(out, "  lines    %lld, %lld commands, %lld moves: %lld extruding, %lld arcs\n",
             (long long)statistics->lines, (long long)statistics->commands,
             (long long)statistics->moves, (long long)statistics->extrusion_moves,
@@ -69,6 +88,8 @@ void report_summary(FILE *out, const char *name, const fio_virtual_printer *prin
     number(out, "", statistics->highest_flow, 2, " mm3/s\n");
     fprintf(out, "  faults   %lld, warnings %lld\n", (long long)statistics->fault_count,
             (long long)statistics->warning_count);
+    if (subject->machine)
+        link_summary(out, subject);
 }
 
 static void event(FILE *out, const char *name, const char *kind, const fio_event *what) {
@@ -82,7 +103,7 @@ static void event(FILE *out, const char *name, const char *kind, const fio_event
     fputc('\n', out);
 }
 
-void report_events(FILE *out, const char *name, const fio_virtual_printer *printer) {
+static void events(FILE *out, const char *name, const fio_virtual_printer *printer) {
     const fio_statistics *statistics = fio_virtual_printer_statistics(printer);
     const fio_event *what;
     for (int64_t i = 0; (what = fio_virtual_printer_fault(printer, i)); i++)
@@ -137,7 +158,29 @@ static void json_box(FILE *out, const char *name, const double corner[3]) {
         number(out, i ? ", " : "[", corner[i], 6, i == 2 ? "]" : "");
 }
 
-void report_json(FILE *out, const char *name, const fio_virtual_printer *printer) {
+static void json_link(FILE *out, const report_subject *subject) {
+    const fio_machine_counts *counts = fio_machine_count(subject->machine);
+    json_integer(out, "bytes_in", counts->bytes_in);
+    json_integer(out, "bytes_out", counts->bytes_out);
+    json_integer(out, "lines_in", counts->lines_in);
+    json_integer(out, "oks", counts->oks);
+    json_integer(out, "resends", counts->resends);
+    json_integer(out, "faults_injected", counts->faults);
+    json_integer(out, "undetectable", counts->undetectable);
+    json_integer(out, "overruns", counts->overruns);
+    json_integer(out, "resets", counts->resets);
+    json_integer(out, "starved", counts->starved);
+    if (subject->bound_first) {
+        json_integer(out, "driver_interfaces_before", subject->bound_first);
+        json_integer(out, "driver_interfaces_after", subject->bound_now);
+    }
+    if (subject->check)
+        fprintf(out, ",\n  \"executed_as_file\": %s", subject->check_result ? "false" : "true");
+}
+
+static void json(FILE *out, const report_subject *subject) {
+    const fio_virtual_printer *printer = subject->printer;
+    const char *name = subject->name;
     const fio_statistics *statistics = fio_virtual_printer_statistics(printer);
     fputs("{\n  \"file\": ", out);
     json_string(out, name);
@@ -176,9 +219,23 @@ void report_json(FILE *out, const char *name, const fio_virtual_printer *printer
     json_number(out, "highest_bed", statistics->highest_bed);
     json_integer(out, "fault_count", statistics->fault_count);
     json_integer(out, "warning_count", statistics->warning_count);
+    if (subject->machine)
+        json_link(out, subject);
     json_events(out, "faults", printer, fio_virtual_printer_fault);
     json_events(out, "warnings", printer, fio_virtual_printer_warning);
     fputs("\n}\n", out);
+}
+
+fio_status report_write(const report_subject *subject, bool as_json) {
+    if (as_json)
+        json(stdout, subject);
+    else if (!subject->quiet)
+        summary(stdout, subject);
+    if (fflush(stdout) || ferror(stdout))
+        return fio_fail(FIO_NOT_WRITTEN, "the summary could not be written");
+    if (!as_json)
+        events(stderr, subject->name, subject->printer);
+    return FIO_OK;
 }
 
 void report_log_entry(void *context, const fio_executed *executed) {
