@@ -27,19 +27,16 @@ static void base_name(char *name, size_t capacity, const fio_usb_found *found) {
         snprintf(name + length, capacity - (size_t)length, ":%s", found->serial);
 }
 
-/* By its serial number if that tells it from all others, else by its place if anything has to. */
-static void usb_name(char *name, size_t capacity, const fio_usb_found *found,
-                     const fio_port_table *table) {
-    char other[128];
-    base_name(name, capacity, found);
+/* Whether its serial number tells it from all others. */
+static bool unique(const fio_usb_found *found, const fio_port_table *table) {
+    char name[128], other[128];
+    base_name(name, sizeof name, found);
     for (int i = 0; i < table->found_count; i++) {
         base_name(other, sizeof other, &table->found[i]);
-        if (&table->found[i] != found && strcmp(name, other) == 0) {
-            snprintf(name, capacity, "usb:%04x:%04x@%s", found->vendor, found->product,
-                     found->place);
-            return;
-        }
+        if (&table->found[i] != found && strcmp(name, other) == 0)
+            return false;
     }
+    return true;
 }
 
 static bool four_digits(const char *text) {
@@ -77,7 +74,11 @@ static void describe_usb(fio_port *port, const fio_usb_found *found, const fio_p
     const char *board = fio_serial_board(found->vendor, found->product, &certain);
     if (!board)
         board = found->label[0] ? found->label : "serial port";
-    usb_name(port->name, sizeof port->name, found, table);
+    if (unique(found, table))
+        base_name(port->name, sizeof port->name, found);
+    else
+        snprintf(port->name, sizeof port->name, "usb:%04x:%04x@%s", found->vendor, found->product,
+                 found->place);
     snprintf(port->driver, sizeof port->driver, "%s", found->link.driver->name);
     snprintf(port->board, sizeof port->board, "%s", board);
     snprintf(port->serial, sizeof port->serial, "%s", found->serial);

@@ -16,6 +16,7 @@ typedef struct virtual_port {
     fio_transport transport; /* comes first */
     fio_transport *inner;
     fio_machine *machine;
+    char firmware[32];
 } virtual_port;
 
 static fio_transport *inner(const fio_transport *transport) {
@@ -191,10 +192,10 @@ static fio_status read_script(char **text, const char *path) {
 
 static fio_status create(virtual_port *self, const char *script, const fio_port_options *options) {
     fio_machine_options machine = fio_machine_options_defaults();
-    char firmware[32], *text = NULL;
+    char *text = NULL;
     double speed = 1;
     machine.rate = options->rate;
-    fio_status status = read_options(&machine, &speed, firmware,
+    fio_status status = read_options(&machine, &speed, self->firmware,
                                      options->virtual_options ? options->virtual_options : "");
     if (status == FIO_OK && script)
         status = read_script(&text, script);

@@ -57,3 +57,11 @@ const char *fio_serial_board(uint16_t vendor, uint16_t product, bool *certain) {
     }
     return NULL;
 }
+
+bool fio_serial_board_at(int index, uint16_t *vendor, uint16_t *product) {
+    if (index < 0 || (size_t)index >= sizeof boards / sizeof *boards)
+        return false;
+    *vendor = boards[index].vendor;
+    *product = boards[index].product;
+    return true;
+}

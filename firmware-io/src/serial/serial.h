@@ -99,4 +99,7 @@ bool fio_serial_match(fio_serial *serial, const fio_usb_device *device);
 /* Names of known boards and bridges: "Arduino Mega 2560"; NULL. *certain: it is a printer's. */
 const char *fio_serial_board(uint16_t vendor, uint16_t product, bool *certain);
 
+/* The IDs it knows, one after the other; false behind the last. */
+bool fio_serial_board_at(int index, uint16_t *vendor, uint16_t *product);
+
 #endif
