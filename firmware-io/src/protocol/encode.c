@@ -11,6 +11,8 @@
  *   no number. It starts with what followed an 'M', 'J' or '-' ('*' too, but then it is a number):
  *   the digits of a value, never a command, save in texts. There those letters are written 'm',
  *   'j', '_' where a command's letter follows.
+ * - Bytes that the firmware leaves out of the line, and so of the sum, even unharmed: a backslash
+ * is written '/', and parentheses as brackets. Commands with a ';' or a control byte are refused.
  * - The '*' becomes anything else: no checksum, rejected. (A text has no '*' of its own: Marlin
  *   would end it there, so it becomes '+'.)
  * - A digit of the checksum: its value changes, or it ends early, which also changes it, since it
@@ -33,7 +35,8 @@
  * 5 as it was sent, and then asks for line 6. A firmware that reads commands in lower case without
  * taking 'n' for 'N' executes a line whose 'N' lost that bit unnumbered, then asks for it again:
  * twice. A bit makes an emergency of M109, M118, M400 and some more, where the firmware obeys those
- * before it looks at the checksum: fio_encode_disguised(). */
+ * before it looks at the checksum: fio_encode_disguised(); of M110 too, which must stay as it is.
+ */
 #include "protocol/encode.h"
 
 #include <string.h>
@@ -134,29 +137,43 @@ static bool is_free_text(int code) {
     return false;
 }
 
+/* What would never arrive as it is; false if it can't be said in another way. */
+static bool spell(char *body, size_t length) {
+    for (size_t i = 0; i < length; i++) {
+        if (body[i] == ';' || ((unsigned char)body[i] < ' ' && body[i] != '\t'))
+            return false;
+        if (body[i] == '\\')
+            body[i] = '/';
+        else if (body[i] == '(' || body[i] == ')')
+            body[i] = body[i] == '(' ? '[' : ']';
+    }
+    return true;
+}
+
 /* The command in `body`, so that it fits into `room` bytes; 0 if it can't. */
 static size_t fit(char *body, const char *command, size_t length, size_t room) {
+    char whole[2 * FIO_WIRE_LINE_MOST];
     int code = code_of(command, length, 'M');
-    if (length > room && !is_shown_text(code)) {
-        if (is_free_text(code) || length > 2 * (size_t)FIO_WIRE_LINE_MOST)
-            return 0;
-        char squeezed[2 * FIO_WIRE_LINE_MOST];
-        memcpy(squeezed, command, length);
-        length = squeeze(squeezed, length);
-        if (length > room)
-            return 0;
-        memcpy(body, squeezed, length);
-        return length;
-    }
-    if (length > room)
+    bool shown = is_shown_text(code);
+    if (shown && length > room) {
         length = room;
-    memcpy(body, command, length);
-    if (is_shown_text(code)) {
-        size_t start = 1;
-        while (start < length && is_digit(body[start]))
-            start++;
-        soften(body + start, length - start);
+        while (length > 0 && ((unsigned char)command[length] & 0xc0) == 0x80)
+            length--; /* no half of a character */
     }
+    if (length > sizeof whole)
+        return 0;
+    memcpy(whole, command, length);
+    if (length > room && !is_free_text(code))
+        length = squeeze(whole, length);
+    if (length > room || !spell(whole, length))
+        return 0;
+    if (shown) {
+        size_t start = 1;
+        while (start < length && is_digit(whole[start]))
+            start++;
+        soften(whole + start, length - start);
+    }
+    memcpy(body, whole, length);
     return length;
 }
 

@@ -16,9 +16,11 @@
 enum { FIO_WIRE_LINE_MOST = 255 }; /* bytes of a line on the wire, its end included */
 
 /* Write "N<number> <command>*<checksum>\n" to `wire` (FIO_WIRE_LINE_MOST + 1 bytes, ends with a 0).
- * `command` has no comment, no end, no N; `number` >= 0. Returns the length, 0 if the line would be
- * longer than `most` bytes without its end (blanks between words are squeezed out first if that
- * helps; the texts of M117, M118, M0 and M1 are cut instead).
+ * `command` has no end, no N; `number` >= 0. Returns the length, 0 if the line would be longer than
+ * `most` bytes without its end (blanks between words are squeezed out first if that helps; the
+ * texts of M117, M118, M0 and M1 are cut instead), or if the command is empty or holds a ';' or a
+ * control byte. A backslash or a parenthesis, which such firmwares leave out, is sent as '/' or a
+ * bracket.
  *
  * A byte that is not the line's end can only be damaged so that the checksum tells. Where the end
  * is damaged, the firmware sees two lines as one, "N5 a*33?N6 b*44", and takes it for line 5 if
