@@ -56,8 +56,7 @@ static void print_help(void) {
         if (!options[i].name)
             printf("\n%s:\n", options[i].help);
         else
-            printf("  %-15s %-12s %s\n", options[i].name, options[i].value ? options[i].value : "",
-                   options[i].help);
+            print_option(&options[i]);
     fputs("\nOther:\n  --help, --version\n"
           "\n"
           "CHIP: cdc-acm, ch340, ch340-limited, ftdi, ftdi-h, cp2102, pl2303hx, pl2303hxn.\n"

@@ -48,6 +48,7 @@ static void submit(void *context, fio_urb *urb) {
     mock *m = context;
     pthread_mutex_lock(&m->standin.lock);
     m->standin.connected = true;
+    m->standin.jumps = 0;
     fio_usb_host_submit(&m->host, fio_pace_now(m->standin.pace), urb);
     turn(m);
     pthread_mutex_unlock(&m->standin.lock);
@@ -108,7 +109,7 @@ static double next(const fio_standin *standin) {
 static fio_status plug(fio_standin *standin, bool in) {
     mock *m = (mock *)standin;
     if (in)
-        fio_usb_host_begin(&m->host, m->device);
+        fio_usb_host_begin(&m->host, m->device, standin->machine);
     if (!m->module->plug(m->node, in))
         return fio_fail(FIO_NOT_WRITTEN, "umockdev: the device can't be plugged in again");
     if (in)
@@ -225,7 +226,7 @@ fio_status fio_standin_mock(fio_standin **standin, fio_machine *machine, fio_pac
     fio_standin_begin(&m->standin, &type, machine, pace);
     m->device = device;
     m->module = module;
-    fio_usb_host_begin(&m->host, device);
+    fio_usb_host_begin(&m->host, device, machine);
     m->host.stall_at = options->stall_at;
     m->wake[0] = m->wake[1] = -1;
     if (pipe2(m->wake, O_CLOEXEC | O_NONBLOCK) != 0)

@@ -55,7 +55,7 @@ fio_status fio_standin_turn(fio_standin *standin, const struct pollfd *polls, in
     fio_status status = serve(standin, polls, count);
     while (status == FIO_OK && !standin->heard && !standin->told && may_jump(standin)) {
         double next = standin->type->next(standin);
-        if (!(next < INFINITY))
+        if (!(next < INFINITY) || next <= fio_pace_now(standin->pace))
             break;
         fio_pace_skip(standin->pace, next);
         standin->jumps++;

@@ -31,12 +31,16 @@ static void read_packets(fio_usb_host *host) {
     size_t size;
     const uint8_t *bytes = fio_virtual_usb_descriptors(host->device, &size);
     for (size_t at = 0; at + 2 <= size && bytes[at] >= 2 && at + bytes[at] <= size; at += bytes[at])
-        if (bytes[at + 1] == 5 && bytes[at] >= 7)
-            host->packet[slot(bytes[at + 2])] = (bytes[at + 4] | bytes[at + 5] << 8) & 0x7ff;
+        if (bytes[at + 1] == 5 && bytes[at] >= 7) {
+            int index = slot(bytes[at + 2]);
+            host->packet[index] = (bytes[at + 4] | bytes[at + 5] << 8) & 0x7ff;
+            if (index >= 16 && (bytes[at + 3] & 3) == 2)
+                host->bulk_in = index;
+        }
 }
 
-void fio_usb_host_begin(fio_usb_host *host, fio_virtual_usb *device) {
-    *host = (fio_usb_host){.device = device, .stall_at = -1};
+void fio_usb_host_begin(fio_usb_host *host, fio_virtual_usb *device, const fio_machine *machine) {
+    *host = (fio_usb_host){.device = device, .machine = machine, .stall_at = -1};
     for (int i = 0; i < FIO_USB_ENDPOINTS; i++)
         begin(&host->waiting[i]);
     begin(&host->done);
@@ -177,7 +181,10 @@ bool fio_usb_host_pump(fio_usb_host *host, double now) {
 }
 
 double fio_usb_host_next(const fio_usb_host *host) {
-    return host->gone ? INFINITY : fio_virtual_usb_next(host->device);
+    bool asked = host->waiting[host->bulk_in].first != NULL;
+    if (host->gone || (!asked && fio_machine_readable(host->machine)))
+        return INFINITY;
+    return fio_virtual_usb_next(host->device);
 }
 
 void fio_usb_host_clear_halt(fio_usb_host *host, double now, uint8_t endpoint) {

@@ -35,16 +35,18 @@ enum { FIO_USB_ENDPOINTS = 32, FIO_USB_PACKET_MOST = 1024 };
 
 typedef struct fio_usb_host {
     fio_virtual_usb *device;
+    const fio_machine *machine;
     fio_urb_queue waiting[FIO_USB_ENDPOINTS]; /* by number, those of IN endpoints above */
     fio_urb_queue done;
     int packet[FIO_USB_ENDPOINTS]; /* bytes; 0: no such endpoint */
+    int bulk_in;                   /* index of the endpoint that answers come over */
     uint32_t halted;               /* endpoints that stalled, until the host clears that */
     int64_t packets_out;           /* bulk */
     int64_t stall_at;              /* this one of them is stalled instead; -1: none */
     bool gone;
 } fio_usb_host;
 
-void fio_usb_host_begin(fio_usb_host *host, fio_virtual_usb *device);
+void fio_usb_host_begin(fio_usb_host *host, fio_virtual_usb *device, const fio_machine *machine);
 
 /* Take a transfer. It may be done at once: look with reap(). */
 void fio_usb_host_submit(fio_usb_host *host, double now, fio_urb *urb);
@@ -60,7 +62,8 @@ fio_urb *fio_usb_host_reap(fio_usb_host *host, const void *client);
 /* Try again what was refused. True if any transfer was done. */
 bool fio_usb_host_pump(fio_usb_host *host, double now);
 
-/* When pump() is worth calling next, on the machine's clock; INFINITY. */
+/* When pump() is worth calling next, on the machine's clock; INFINITY: not before the host submits
+ * something, since it does not ask for what there is. */
 double fio_usb_host_next(const fio_usb_host *host);
 
 /* An endpoint that stalled works again, as after CLEAR_FEATURE(ENDPOINT_HALT). */

@@ -92,7 +92,7 @@ static void let_go(usbip *s) {
     s->transfer_count = 0;
     s->full = false;
     s->standin.connected = false;
-    fio_usb_host_begin(&s->host, s->device);
+    fio_usb_host_begin(&s->host, s->device, s->standin.machine);
 }
 
 static bool send_message(usbip *s, fio_usbip_command command, uint32_t sequence, int status,
@@ -243,7 +243,7 @@ static void import(usbip *s, caller *who) {
     s->importer = who;
     s->standin.connected = true;
     s->standin.sessions++;
-    fio_usb_host_begin(&s->host, s->device);
+    fio_usb_host_begin(&s->host, s->device, s->standin.machine);
 }
 
 /* A request before any import. */
@@ -360,7 +360,7 @@ static usbip *create(fio_machine *machine, fio_pace *pace, fio_virtual_usb *devi
     s->messages_end = &s->messages;
     for (int i = 0; i < CALLERS; i++)
         s->callers[i].file = -1;
-    fio_usb_host_begin(&s->host, device);
+    fio_usb_host_begin(&s->host, device, machine);
     return s;
 }
 
