@@ -191,7 +191,8 @@ static void test_cp210x(void) {
                 continue;
             const uint8_t *data = device.seen[0].data;
             CHECK_EQUAL(0x1e, device.seen[0].request);
-            CHECK_EQUAL(rates[i], data[0] | data[1] << 8 | data[2] << 16 | (int64_t)data[3] << 24);
+            CHECK_EQUAL((int64_t)best,
+                        data[0] | data[1] << 8 | data[2] << 16 | (int64_t)data[3] << 24);
         }
     }
 }
@@ -271,6 +272,37 @@ static void test_absurd_rates(void) {
     CHECK_EQUAL(0, device.count);
 }
 
+/* 12058624 once passed as done without a request to the device; 78000 is nearest to 76800, which
+ * only a CP2102 that is told 76800 makes of it; and a list ends with its highest rate. */
+static void test_rates_between_and_beyond(void) {
+    static const struct {
+        raw_device id;
+        int64_t rate;
+        uint8_t data[4];
+    } cases[] = {
+        {{0x0110, 0x10c4, 0xea60, 0x0100, 0, 64}, 78000, {0x00, 0x2c, 0x01, 0x00}},
+        {{0x0110, 0x10c4, 0xea60, 0x0100, 0, 64}, 2050000, {0x80, 0x84, 0x1e, 0x00}},
+        {{0x0110, 0x067b, 0x2303, 0x0300, 0, 64}, 6100000, {0x80, 0x8d, 0x5b, 0x00}},
+        {{0x0200, 0x067b, 0x2303, 0x0400, 0, 64}, 12058624, {0x00, 0x1b, 0xb7, 0x00}},
+    };
+    for (int i = 0; i < COUNT(cases); i++) {
+        recorder device = {.fail_at = -1};
+        fio_serial serial = plug(&device, cases[i].id, 64);
+        CHECK_EQUAL(FIO_OK, serial.driver->set_rate(&serial, cases[i].rate));
+        CHECK_EQUAL(cases[i].rate, serial.rate);
+        CHECK(device.count > 0 && memcmp(device.seen[0].data, cases[i].data, 4) == 0);
+    }
+    recorder device = {.fail_at = -1};
+    raw bytes = raw_mega();
+    fio_usb_device found;
+    fio_serial serial = {.control = recorder_control(&device)};
+    CHECK(fio_usb_device_read(&found, bytes.bytes, bytes.size) &&
+          fio_serial_match(&serial, &found));
+    CHECK_EQUAL(FIO_OK, serial.driver->set_rate(&serial, 12058624));
+    CHECK_SEEN(&device,
+               ((const seen_request[]){{0x21, 0x20, 0, 0, 7, {0x00, 0x1b, 0xb7, 0, 0, 0, 8}}}));
+}
+
 /* Packets of every size in transfers of every size: what is left is the data, nothing more. */
 static void test_unwrap_of_every_split(void) {
     static const uint16_t sizes[] = {64, 512};
@@ -325,6 +357,7 @@ int main(void) {
     RUN(test_cp210x);
     RUN(test_pl2303);
     RUN(test_absurd_rates);
+    RUN(test_rates_between_and_beyond);
     RUN(test_unwrap_of_every_split);
     RUN(test_unwrap_notices_line_errors);
     return check_verdict();

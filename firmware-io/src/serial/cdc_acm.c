@@ -69,11 +69,13 @@ static fio_status tell(fio_serial *serial, uint8_t request, uint16_t value, void
 }
 
 static fio_status set_rate(fio_serial *serial, int64_t rate) {
-    if (rate < 1 || rate > HIGHEST_RATE)
-        return fio_serial_check_rate(serial, rate, rate < 1 ? 1 : HIGHEST_RATE);
+    int64_t told = rate < 1 ? 1 : rate > HIGHEST_RATE ? HIGHEST_RATE : rate;
+    fio_status status = fio_serial_check_rate(serial, rate, (double)told);
+    if (status != FIO_OK)
+        return status;
     uint8_t coding[7] = {
-        (uint8_t)rate, (uint8_t)(rate >> 8), (uint8_t)(rate >> 16), (uint8_t)(rate >> 24), 0, 0, 8};
-    fio_status status = tell(serial, SET_LINE_CODING, 0, coding, sizeof coding);
+        (uint8_t)told, (uint8_t)(told >> 8), (uint8_t)(told >> 16), (uint8_t)(told >> 24), 0, 0, 8};
+    status = tell(serial, SET_LINE_CODING, 0, coding, sizeof coding);
     if (status == FIO_OK)
         serial->rate = rate;
     return status;

@@ -45,7 +45,7 @@ static fio_request request(const fio_serial *serial, uint8_t code, uint16_t valu
 }
 
 /* AN205: the first parts know these rates and, but for the very first, 1 M; what lies between they
- * take for one of them. */
+ * take for one of them, which need not be the nearest. */
 static double listed_rate(double rate, int part) {
     static const int rates[] = {300,    600,    1200,   1800,   2400,   4000,   4800,   7200,
                                 9600,   14400,  16000,  19200,  28800,  38400,  51200,  56000,
@@ -89,8 +89,9 @@ static fio_status set_rate(fio_serial *serial, int64_t rate) {
     fio_status status = fio_serial_check_rate(serial, rate, nearest);
     if (status != FIO_OK)
         return status;
-    uint8_t bytes[4] = {(uint8_t)rate, (uint8_t)(rate >> 8), (uint8_t)(rate >> 16),
-                        (uint8_t)(rate >> 24)};
+    uint32_t told = (uint32_t)nearest;
+    uint8_t bytes[4] = {(uint8_t)told, (uint8_t)(told >> 8), (uint8_t)(told >> 16),
+                        (uint8_t)(told >> 24)};
     status = fio_serial_send(serial, request(serial, SET_RATE, 0, sizeof bytes), bytes);
     if (status == FIO_OK)
         serial->rate = rate;

@@ -80,18 +80,19 @@ static double divided(uint8_t bytes[4], double rate, bool alternative) {
     return base / (mantissa * pow(step, exponent));
 }
 
-static double most_of(variant chip) {
-    static const double most[] = {1228800, 6e6, 12e6, 6e6, 12e6, 12e6};
+static int most_of(variant chip) {
+    static const int most[] = {1228800, 6000000, 12000000, 6000000, 12000000, 12000000};
     return most[chip];
 }
 
+/* The rate it will be, and its bytes. */
 static double encode(uint8_t bytes[4], int64_t rate, variant chip) {
-    double most = most_of(chip);
-    if (rate > 0 && (double)rate <= most && chip != CHIP_HXN && !listed(rate))
-        return divided(bytes, (double)rate, chip == CHIP_TA || chip == CHIP_TB);
+    int64_t most = most_of(chip), told = rate < 1 ? 1 : rate > most ? most : rate;
+    if (chip != CHIP_HXN && !listed(told))
+        return divided(bytes, (double)told, chip == CHIP_TA || chip == CHIP_TB);
     for (int i = 0; i < 4; i++)
-        bytes[i] = (uint8_t)(rate >> (8 * i));
-    return rate < 1 ? 1 : fmin((double)rate, most);
+        bytes[i] = (uint8_t)(told >> (8 * i));
+    return (double)told;
 }
 
 /* HXN keeps other things in the register of the flow control; the others have it for themselves. */
