@@ -10,7 +10,7 @@
  *   number but no checksum, and is rejected. What follows an LF or CR is a line of its own, with
  *   no number. It starts with what followed an 'M', 'J' or '-' ('*' too, but then it is a number):
  *   the digits of a value, never a command, save in texts. There those letters are written 'm',
- *   'j', '_' where a command's letter follows.
+ *   'j', '_' where a command's letter follows (8a and 8d, of UTF-8, '?'). A tab is sent as a blank.
  * - Bytes that the firmware leaves out of the line, and so of the sum, even unharmed: a backslash
  * is written '/', and parentheses as brackets. Commands with a ';' or a control byte are refused.
  * - The '*' becomes anything else: no checksum, rejected. (A text has no '*' of its own: Marlin
@@ -97,7 +97,7 @@ static bool is_shown_text(int code) {
 }
 
 static bool starts_command(const char *text, size_t length) {
-    while (length > 0 && (*text == ' ' || *text == '\t'))
+    while (length > 0 && *text == ' ')
         text++, length--;
     return length > 0 && *text && strchr("GMTNgmtn", *text);
 }
@@ -114,6 +114,8 @@ static void soften(char *text, size_t length) {
             text[i] |= 32;
         else if (text[i] == 'M' && length - i >= 4 && memcmp(text + i, "M110", 4) == 0)
             text[i] |= 32; /* sets the line number wherever it stands */
+        else if (((unsigned char)text[i] == 0x8a || (unsigned char)text[i] == 0x8d) && command)
+            text[i] = '?';
         else if (text[i] == 'H' && i > 0 && text[i - 1] == 'H')
             text[i] |= 32;
     }
@@ -142,6 +144,8 @@ static bool spell(char *body, size_t length) {
     for (size_t i = 0; i < length; i++) {
         if (body[i] == ';' || ((unsigned char)body[i] < ' ' && body[i] != '\t'))
             return false;
+        if (body[i] == '\t')
+            body[i] = ' ';
         if (body[i] == '\\')
             body[i] = '/';
         else if (body[i] == '(' || body[i] == ')')
@@ -231,21 +235,32 @@ static bool one_bit_apart(const char *digits, const char *other) {
     return bytes == 1 && (differences & (differences - 1)) == 0;
 }
 
-size_t fio_encode_disguised(char *text, const char *command, size_t length) {
+/* Whether one bit makes an emergency of a code that begins with these three digits. */
+static bool near_emergency(const char digits[3]) {
     static const char *const emergencies[] = {"108", "112", "410", "876"};
-    bool needed = false;
-    int code = code_of(command, length, 'M');
+    for (int i = 0; i < 4; i++)
+        if (one_bit_apart(digits, emergencies[i]))
+            return true;
+    return false;
+}
+
+size_t fio_encode_disguised(char *text, const char *command, size_t length) {
+    size_t zeros = 0;
     text[0] = 0;
     if (length == 0)
         return 0;
     /* M110 is looked for as it is written. */
-    if (length >= 4 && code >= 100 && code != 110 && is_digit(command[2]) && is_digit(command[3]))
-        for (int i = 0; i < 4; i++)
-            needed = needed || one_bit_apart(command + 1, emergencies[i]);
+    int code = code_of(command, length, 'M');
+    if (length >= 4 && code >= 100 && code != 110 && is_digit(command[2]) && is_digit(command[3])) {
+        char digits[5] = {'0', '0', command[1], command[2], command[3]};
+        while (zeros < 2 && near_emergency(digits + 2 - zeros))
+            zeros++; /* "M0128" would be an M112 with its 0 hit, "M00128" is none */
+    } else if (code == 41) {
+        zeros = 1; /* its blank is one bit from a 0 */
+    }
     text[0] = command[0];
-    if (needed)
-        text[1] = '0';
-    memcpy(text + 1 + needed, command + 1, length - 1);
-    text[length + needed] = 0;
-    return length + needed;
+    memset(text + 1, '0', zeros);
+    memcpy(text + 1 + zeros, command + 1, length - 1);
+    text[length + zeros] = 0;
+    return length + zeros;
 }

@@ -33,7 +33,7 @@ size_t fio_encode_line(char *wire, int64_t number, const char *command, size_t l
 /* A firmware with an emergency parser obeys M108, M112, M410 and M876 in whatever it receives, with
  * no look at the checksum: one bit makes M400 an M410 that throws moves away. "M0400" is the same
  * command, but no single bit makes an emergency of it. Writes the command so if that is needed,
- * else as it is. `text` has room for length + 2 bytes and ends with a 0; returns its length. */
+ * else as it is. `text` has room for length + 3 bytes and ends with a 0; returns its length. */
 size_t fio_encode_disguised(char *text, const char *command, size_t length);
 
 /* XOR of the bytes. */
