@@ -42,42 +42,42 @@ static void turn(mock *m) {
     wake(m);
 }
 
-/* --- called by the module, on its thread --- */
+/* --- called by the module, on its thread, all after lock() --- */
+
+static void lock(void *context) {
+    pthread_mutex_lock(&((mock *)context)->standin.lock);
+}
+
+static void unlock(void *context) {
+    pthread_mutex_unlock(&((mock *)context)->standin.lock);
+}
 
 static void submit(void *context, fio_urb *urb) {
     mock *m = context;
-    pthread_mutex_lock(&m->standin.lock);
     m->standin.connected = true;
     m->standin.jumps = 0;
     fio_usb_host_submit(&m->host, fio_pace_now(m->standin.pace), urb);
     turn(m);
-    pthread_mutex_unlock(&m->standin.lock);
 }
 
 static bool cancel(void *context, const fio_urb *urb, int status) {
     mock *m = context;
-    pthread_mutex_lock(&m->standin.lock);
     bool found = fio_usb_host_cancel(&m->host, urb, status);
     changed(m);
-    pthread_mutex_unlock(&m->standin.lock);
     return found;
 }
 
 static fio_urb *reap(void *context, const void *client) {
     mock *m = context;
-    pthread_mutex_lock(&m->standin.lock);
     fio_urb *urb = fio_usb_host_reap(&m->host, client);
     changed(m);
-    pthread_mutex_unlock(&m->standin.lock);
     return urb;
 }
 
 static void clear_halt(void *context, uint8_t endpoint) {
     mock *m = context;
-    pthread_mutex_lock(&m->standin.lock);
     fio_usb_host_clear_halt(&m->host, fio_pace_now(m->standin.pace), endpoint);
     turn(m);
-    pthread_mutex_unlock(&m->standin.lock);
 }
 
 /* --- called by the loop --- */
@@ -128,7 +128,9 @@ static void close_it(fio_standin *standin) {
 
 void fio_mock_bound(fio_standin *standin, int *now, int *first) {
     mock *m = (mock *)standin;
+    pthread_mutex_lock(&standin->lock);
     m->module->bound(m->node, now, first);
+    pthread_mutex_unlock(&standin->lock);
 }
 
 /* Beside the program as it was built, where it is installed, or where ISOPRINT_UMOCKDEV says. */
@@ -193,7 +195,7 @@ static fio_status plug_in(mock *m, const fio_mock_options *options) {
     char reason[256];
     size_t size;
     const uint8_t *bytes = fio_virtual_usb_descriptors(m->device, &size);
-    const fio_umockdev_host host = {m, submit, cancel, reap, clear_halt};
+    const fio_umockdev_host host = {m, lock, unlock, submit, cancel, reap, clear_halt};
     fio_umockdev_device device = {
         .descriptors = bytes,
         .size = size,

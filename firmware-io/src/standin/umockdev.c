@@ -239,8 +239,11 @@ static int answer(fio_umockdev *mock, UMockdevIoctlClient *client, guint32 reque
 }
 
 static gboolean on_ioctl(UMockdevIoctlBase *base, UMockdevIoctlClient *client, gpointer context) {
+    fio_umockdev *mock = context;
     UMockdevIoctlData *arg = umockdev_ioctl_client_get_arg(client); /* borrowed */
-    int error = answer(context, client, (guint32)umockdev_ioctl_client_get_request(client), arg);
+    mock->host.lock(mock->host.context);
+    int error = answer(mock, client, (guint32)umockdev_ioctl_client_get_request(client), arg);
+    mock->host.unlock(mock->host.context);
     umockdev_ioctl_client_complete(client, error ? -1 : 0, error);
     return TRUE;
 }
@@ -248,12 +251,14 @@ static gboolean on_ioctl(UMockdevIoctlBase *base, UMockdevIoctlClient *client, g
 /* As the kernel does when a file is closed: what is under way ends, interfaces are let go. */
 static void on_vanished(UMockdevIoctlBase *base, UMockdevIoctlClient *client, gpointer context) {
     fio_umockdev *mock = context;
+    mock->host.lock(mock->host.context);
     for (mock_urb *urb = mock->urbs; urb; urb = urb->next)
         if (urb->urb.client == client)
             mock->host.cancel(mock->host.context, &urb->urb, -ENOENT);
     for (fio_urb *done; (done = mock->host.reap(mock->host.context, client));)
         release_urb(mock, done->owner);
     fio_usb_claims_vanish(&mock->claims, client);
+    mock->host.unlock(mock->host.context);
 }
 
 static void describe_text(GString *text, const char *name, const char *value) {
@@ -283,9 +288,9 @@ static char *describe(const fio_umockdev *mock) {
     return g_string_free(text, FALSE);
 }
 
+/* Without the lock, but for the last step. */
 static bool add(fio_umockdev *mock, char reason[256]) {
     GError *error = NULL;
-    snprintf(mock->node, sizeof mock->node, "/dev/bus/usb/001/%03d", mock->number);
     bool done = umockdev_testbed_attach_ioctl(mock->testbed, mock->node, mock->ioctls, &error);
     if (done) {
         char *text = describe(mock);
@@ -295,7 +300,18 @@ static bool add(fio_umockdev *mock, char reason[256]) {
     snprintf(reason, 256, "umockdev: %s", error ? error->message : "no FIFO can be made");
     if (error)
         g_error_free(error);
-    return done && replace_node(mock);
+    mock->host.lock(mock->host.context);
+    done = done && replace_node(mock);
+    mock->gone = !done;
+    mock->host.unlock(mock->host.context);
+    return done;
+}
+
+static void name_node(fio_umockdev *mock, int number) {
+    mock->number = number;
+    snprintf(mock->node, sizeof mock->node, "/dev/bus/usb/001/%03d", number);
+    fio_usb_claims_begin(&mock->claims, mock->device.descriptors, mock->device.size,
+                         mock->device.bound);
 }
 
 static void take_away(fio_umockdev *mock) {
@@ -304,24 +320,31 @@ static void take_away(fio_umockdev *mock) {
     umockdev_testbed_detach_ioctl(mock->testbed, mock->node, NULL);
 }
 
-static bool plug(fio_umockdev *mock, bool in) {
+static bool put_back(fio_umockdev *mock) {
     char reason[256];
-    if (!in) {
-        mock->gone = true;
-        take_away(mock);
-        return true;
-    }
-    if (mock->gate >= 0)
-        close(mock->gate);
-    mock->gate = -1;
-    mock->number = mock->number % 100 + 1;
-    fio_usb_claims_begin(&mock->claims, mock->device.descriptors, mock->device.size,
-                         mock->device.bound);
     if (!add(mock, reason))
         return false;
-    mock->gone = false;
     umockdev_testbed_uevent(mock->testbed, sys_path, "add");
     return true;
+}
+
+static bool plug(fio_umockdev *mock, bool in) {
+    bool done = true;
+    if (!in) {
+        mock->gone = true;
+    } else {
+        if (mock->gate >= 0)
+            close(mock->gate);
+        mock->gate = -1;
+        name_node(mock, mock->number % 100 + 1);
+    }
+    mock->host.unlock(mock->host.context);
+    if (in)
+        done = put_back(mock);
+    else
+        take_away(mock);
+    mock->host.lock(mock->host.context);
+    return done;
 }
 
 static void close_mock(fio_umockdev *mock) {
@@ -342,15 +365,14 @@ static fio_umockdev *open_mock(const fio_umockdev_host *host, const fio_umockdev
     mock->host = *host;
     mock->device = *device;
     mock->gate = -1;
-    mock->number = 2;
+    mock->gone = true;
+    name_node(mock, 2);
     mock->testbed = umockdev_testbed_new();
     mock->ioctls = umockdev_ioctl_base_new();
     g_signal_connect(mock->ioctls, "handle-ioctl", G_CALLBACK(on_ioctl), mock);
     g_signal_connect(mock->ioctls, "client-vanished", G_CALLBACK(on_vanished), mock);
-    fio_usb_claims_begin(&mock->claims, device->descriptors, device->size, device->bound);
     if (add(mock, reason))
         return mock;
-    mock->gone = true;
     close_mock(mock);
     return NULL;
 }

@@ -12,9 +12,11 @@
 #define FIO_UMOCKDEV_VERSION 1
 #define FIO_UMOCKDEV_ENTRY "fio_umockdev_module_table"
 
-/* What the module calls, on umockdev's own thread. Each locks what it has to. */
+/* What the module calls, on umockdev's own thread: all with the lock that is taken by lock(). */
 typedef struct fio_umockdev_host {
     void *context;
+    void (*lock)(void *context);
+    void (*unlock)(void *context);
     void (*submit)(void *context, fio_urb *urb);
     bool (*cancel)(void *context, const fio_urb *urb, int status);
     fio_urb *(*reap)(void *context, const void *client);
@@ -32,6 +34,8 @@ typedef struct fio_umockdev_device {
 
 typedef struct fio_umockdev fio_umockdev;
 
+/* All but open() and close() are called with the lock held; plug() lets go of it for a while, since
+ * umockdev waits for its thread at times. */
 typedef struct fio_umockdev_module {
     int version;
     /* NULL on failure, with what failed in `reason`. The device is plugged in at once. Texts and
