@@ -17,6 +17,7 @@ void fio_firmware_reset(fio_machine *machine) {
     machine->received_first = machine->received_last;
     machine->reader = (fio_reader){0};
     machine->line_tainted = false;
+    machine->taint_at = INT32_MAX;
     machine->emergency = (fio_emergency_parser){0};
     machine->queued = 0;
     machine->busy_seconds = machine->options.busy_seconds;
@@ -113,6 +114,25 @@ void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict) {
     printer->statistics.rejected_lines++;
 }
 
+/* Where the line is damaged first; bytes lost show at the one after them. */
+static bool read_byte(fio_machine *machine, uint16_t got) {
+    char byte = (char)(got & 0xff);
+    bool whole = fio_reader_feed(&machine->reader, byte);
+    if (got & FIO_TAINT) {
+        machine->line_tainted = machine->line_tainted || machine->reader.done;
+        int at = machine->reader.length > 0 ? machine->reader.length - 1 : 0;
+        machine->taint_at = at < machine->taint_at ? at : machine->taint_at;
+    }
+    return whole;
+}
+
+/* Damage behind the checksum changes nothing that is executed. */
+static bool is_tainted(const fio_machine *machine) {
+    const char *text = machine->reader.text, *star = strrchr(text, '*');
+    int end = *text == 'N' && star ? (int)(star - text) : INT32_MAX - 1;
+    return machine->line_tainted || machine->taint_at <= end;
+}
+
 /* Without an emergency parser these act when they are read, as long as they bear no number. */
 static void act_early(fio_machine *machine, const char *text) {
     if (machine->options.emergency_parser)
@@ -158,7 +178,7 @@ static void take_line(fio_machine *machine) {
     memcpy(queued->text, reader->text, (size_t)reader->length + 1);
     queued->length = reader->length;
     queued->cut = reader->cut;
-    queued->tainted = machine->line_tainted;
+    queued->tainted = is_tainted(machine);
     queued->silent = false;
 }
 
@@ -166,13 +186,13 @@ static void read_lines(fio_machine *machine) {
     while (machine->queued < machine->options.command_slots && !machine->plan.reset &&
            !machine->plan.halt && machine->received_first != machine->received_last) {
         uint16_t got = machine->received[machine->received_first++ & (FIO_RECEIVE_MOST - 1)];
-        if (got & FIO_TAINT)
-            machine->line_tainted = true;
-        bool whole = fio_reader_feed(&machine->reader, (char)(got & 0xff));
+        bool whole = read_byte(machine, got);
         if (whole)
             take_line(machine);
-        if (machine->reader.done) /* a false end of line taints the line after it, too */
+        if (machine->reader.done) { /* a false end of line taints the line after it, too */
             machine->line_tainted = got & FIO_TAINT;
+            machine->taint_at = INT32_MAX;
+        }
     }
 }
 
@@ -250,7 +270,7 @@ static bool turn(fio_machine *machine) {
         if (machine->now < machine->until)
             return false;
         fio_line_read(&machine->line, machine->queue[machine->oldest].text,
-                      machine->queue[machine->oldest].length);
+                      machine->queue[machine->oldest].length, machine->options.case_insensitive);
         machine->busy_at = machine->now + machine->busy_seconds;
         machine->processor = FIO_BLOCKED;
         return true;

@@ -87,8 +87,8 @@ const char *fio_line_complaint(fio_line_verdict verdict) {
                                           : "No Checksum with line number";
 }
 
-static const char *read_line_number(fio_line *line, const char *p) {
-    if (*p != 'N' && *p != 'n')
+static const char *read_line_number(fio_line *line, const char *p, bool lower) {
+    if (*p != 'N' && !(lower && *p == 'n'))
         return p;
     const char *after = skip_blanks(p + 1, p + strlen(p));
     if (*after == '-')
@@ -131,12 +131,13 @@ static void read_command(fio_line *line, const char *p, const char *end) {
     line->arguments = (int)(after - line->text);
 }
 
-void fio_line_read(fio_line *line, const char *text, int length) {
+void fio_line_read(fio_line *line, const char *text, int length, bool lower) {
     line->has_number = false;
     line->number = -1;
     line->seen = line->valued = 0;
     line->stray = -1;
-    const char *end = text + length, *start = read_line_number(line, text);
+    line->arguments = 0;
+    const char *end = text + length, *start = read_line_number(line, text, lower);
     start = skip_blanks(start, end);
     const char *star = strrchr(start, '*');
     if (star && (line->has_number || checksum_follows(star + 1, end)))
@@ -146,7 +147,10 @@ void fio_line_read(fio_line *line, const char *text, int length) {
     line->length = (int)(end - start);
     memcpy(line->text, start, (size_t)line->length);
     line->text[line->length] = 0;
-    read_command(line, line->text, line->text + line->length);
+    if (lower || (line->text[0] >= 'A' && line->text[0] <= 'Z'))
+        read_command(line, line->text, line->text + line->length);
+    else
+        line->letter = 0;
 }
 
 void fio_line_words(fio_line *line) {

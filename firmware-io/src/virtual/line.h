@@ -41,8 +41,8 @@ int fio_line_strip(char text[FIO_LINE_MOST + 1], bool *cut, const char *bytes, s
 fio_line_verdict fio_line_check(const char *text, int64_t *last, bool lower);
 const char *fio_line_complaint(fio_line_verdict verdict); /* "checksum mismatch" … */
 
-/* Take a stripped line apart: number and checksum are cut off. */
-void fio_line_read(fio_line *line, const char *text, int length);
+/* Take a stripped line apart: number and checksum are cut off. `lower`: n, g, m and t will do. */
+void fio_line_read(fio_line *line, const char *text, int length, bool lower);
 
 /* Read the words of `arguments`: not for commands whose argument is free text. */
 void fio_line_words(fio_line *line);

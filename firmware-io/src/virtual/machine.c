@@ -88,6 +88,7 @@ fio_status fio_machine_create(fio_machine **machine, const fio_machine_options *
     made->busy_seconds = options->busy_seconds;
     made->processor = FIO_IDLE;
     made->damage_at = made->lose_at = -1;
+    made->taint_at = INT32_MAX;
     *machine = made;
     return FIO_OK;
 }

@@ -72,7 +72,8 @@ struct fio_machine {
     unsigned received_first, received_last;
     bool lost_before; /* bytes were lost before the next one received */
     fio_reader reader;
-    bool line_tainted;
+    bool line_tainted; /* as a whole: one of its ends is false */
+    int taint_at;      /* where its text is damaged first; INT32_MAX: nowhere */
     fio_emergency_parser emergency;
 
     fio_queued queue[FIO_SLOTS_MOST];

@@ -226,7 +226,7 @@ fio_status fio_virtual_printer_execute(fio_virtual_printer *printer, const char 
     if (verdict != FIO_LINE_GOOD)
         return reject(printer, fio_line_complaint(verdict));
     fio_line parsed;
-    fio_line_read(&parsed, text, kept);
+    fio_line_read(&parsed, text, kept, true);
     if (parsed.length == 0 && !parsed.has_number)
         return FIO_OK;
     if (parsed.has_number || printer->last_number != before)
