@@ -54,13 +54,25 @@ typedef struct fio_stream_options {
     bool finish_heaters_off;          /* also at the regular end */
 } fio_stream_options;
 
+enum { FIO_STREAM_RUNS = 16 };
+
+/* Commands of the host among those of the job: so many lines from this number on. */
+typedef struct fio_stream_run {
+    int64_t number, count;
+} fio_stream_run;
+
 /* Where an earlier run of this job ended. */
 typedef struct fio_stream_resume {
     int64_t accepted; /* commands of the job that the firmware surely has: 0 … this - 1 */
     int64_t sent;     /* commands that went out, >= accepted: whether they arrived is open */
-    int64_t number;  /* N of the command `accepted`, if the firmware has not been reset since; -1 */
-    int64_t made;    /* commands surely made, <= accepted: where to go on after a reset */
-    fio_track track; /* before the command `accepted`… */
+    /* N of the first line that the firmware has not surely got; -1 if it has been reset since, or
+     * does not count lines. From there on come the commands of the job, `accepted` first, but for
+     * the runs of host commands. So the firmware's "Last Line" tells which command is next. */
+    int64_t number;
+    int32_t run_count;
+    fio_stream_run runs[FIO_STREAM_RUNS];
+    int64_t made;         /* commands surely made, <= accepted: where to go on after a reset */
+    fio_track track;      /* before the command `accepted`… */
     fio_track track_made; /* …and before the command `made` */
 } fio_stream_resume;
 
@@ -106,7 +118,7 @@ typedef struct fio_stream_report {
     fio_status status;      /* of the end: FIO_OK, FIO_FAULTY, FIO_NO_PRINTER, FIO_LINK_LOST, … */
     const char *message;    /* of the end: what happened, where, and what to do; "" */
     int64_t sent, accepted; /* commands of the job */
-    int64_t line;           /* of the file, of the last accepted command */
+    int64_t line;           /* of the file, of the last accepted command; 0: none */
     int64_t offset;         /* in bytes, behind it */
     int32_t layer;
     int64_t lines_sent, bytes_sent, resends, repeats; /* on the wire, everything included */

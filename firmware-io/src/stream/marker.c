@@ -1,0 +1,119 @@
+/* Markers: commands whose answer proves that all before them was executed.
+ *
+ * An ok says nothing of which line it is for, and one too many looks like any other. So a text that
+ * no other line has is sent for an echo (M118); where that is not known, M105, whose answer only
+ * M105 gives: there one is under way at a time, and an answer right behind another one is taken for
+ * its double. Rejected: M110 with its own number, which is answered by a plain ok. */
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "stream/state.h"
+
+#define RETRY_SECONDS 0.3   /* its ok came, its echo did not */
+#define DOUBLE_SECONDS 0.05 /* an answer so soon after another is its double */
+enum { ECHOES_MISSED_MOST = 3, TOKEN = 7 };
+
+/* Seven hexadecimal digits of the number, mixed so that no two damaged bits make one of another. */
+static void token_of(int64_t number, char token[TOKEN + 1]) {
+    uint64_t bits = (uint64_t)number * 0x9e3779b97f4a7c15u;
+    bits ^= bits >> 31;
+    bits *= 0xbf58476d1ce4e5b9u;
+    bits ^= bits >> 29;
+    for (int i = 0; i < TOKEN; i++)
+        token[i] = "0123456789abcdef"[bits >> (4 * i) & 15];
+    token[TOKEN] = 0;
+}
+
+size_t fio_marker_text(const fio_streamer *streamer, char *text, size_t capacity) {
+    char token[TOKEN + 1];
+    fio_text out = fio_text_in(text, capacity);
+    token_of(streamer->next, token);
+    fio_text_string(&out, streamer->echoes ? "M118 " : "M105");
+    if (streamer->echoes)
+        fio_text_string(&out, token);
+    return out.length;
+}
+
+void fio_marker_sent(fio_streamer *streamer) {
+    streamer->marker = streamer->next - 1;
+    streamer->marker_lines = 0;
+    streamer->marker_time = streamer->now;
+    streamer->marker_told = false;
+    streamer->probe = false;
+}
+
+static bool unsure(const fio_streamer *streamer) {
+    return streamer->executed < streamer->next - 1;
+}
+
+/* When to send one although nothing asks for it; INFINITY: not before something else happens. */
+double fio_marker_deadline(const fio_streamer *streamer) {
+    bool wanted = streamer->state != FIO_STREAM_DONE && streamer->host_first == streamer->host_last;
+    if (streamer->plain || streamer->opened_file || streamer->handshaking || !wanted ||
+        !unsure(streamer) || streamer->cursor < streamer->next)
+        return INFINITY;
+    if (streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NAME)
+        return INFINITY;
+    if (streamer->probe)
+        return streamer->now;
+    bool outstanding = streamer->marker > streamer->executed;
+    if (outstanding && !streamer->marker_told)
+        return INFINITY;
+    if (outstanding)
+        return streamer->marker_answered + RETRY_SECONDS;
+    if (streamer->marker_lines >= FIO_MARKER_LINES)
+        return streamer->now;
+    return streamer->marker_lines > 0 ? streamer->marker_time + FIO_MARKER_SECONDS : INFINITY;
+}
+
+bool fio_marker_due(const fio_streamer *streamer) {
+    return fio_marker_deadline(streamer) <= streamer->now;
+}
+
+static void credit(fio_streamer *streamer, int64_t number, bool has_ok) {
+    fio_history_execute(streamer, number);
+    fio_window_set(streamer, has_ok ? number : number - 1);
+    streamer->echoes_missed = 0;
+}
+
+bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
+    char token[TOKEN + 1];
+    if (!streamer->echoes || answer->length < TOKEN || answer->length > TOKEN + 8)
+        return false;
+    const char *tail = answer->text + answer->length - TOKEN;
+    for (int64_t n = streamer->next - 1; n > streamer->executed; n--) {
+        const fio_sent_line *line = fio_history_line(streamer, n);
+        if (!line || !line->marker)
+            continue;
+        token_of(n, token);
+        if (memcmp(token, tail, TOKEN) == 0) {
+            streamer->echo_proved = true;
+            credit(streamer, n, false);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* An ok was counted: perhaps it is the marker's. */
+void fio_marker_answered(fio_streamer *streamer, const fio_answer *answer) {
+    if (streamer->plain || streamer->marker <= streamer->executed)
+        return;
+    if (!streamer->echoes && answer->has_temperatures) {
+        bool doubled = streamer->now - streamer->marker_answered < DOUBLE_SECONDS &&
+                       streamer->marker_time < streamer->marker_answered;
+        if (!doubled && !streamer->marker_told) {
+            streamer->marker_told = true;
+            credit(streamer, streamer->marker, true);
+        }
+        streamer->marker_answered = streamer->now;
+        return;
+    }
+    if (streamer->answered < streamer->marker || streamer->marker_told)
+        return;
+    streamer->marker_told = true;
+    streamer->marker_answered = streamer->now;
+    if (++streamer->echoes_missed >= ECHOES_MISSED_MOST && !streamer->echo_proved)
+        streamer->echoes = false; /* answered again and again, but never echoed: it can't */
+}

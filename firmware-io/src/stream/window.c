@@ -1,0 +1,101 @@
+/* How much may be under way at once, and the oks that say how much is. */
+#include <math.h>
+
+#include "stream/state.h"
+
+static int64_t end_of(const fio_streamer *streamer, int64_t number) {
+    const fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
+    return line->number == number ? line->end : streamer->answered_end;
+}
+
+int64_t fio_window_lines(const fio_streamer *streamer) {
+    return streamer->cursor - 1 - streamer->answered;
+}
+
+int64_t fio_window_bytes(const fio_streamer *streamer) {
+    if (streamer->cursor - 1 <= streamer->answered)
+        return 0;
+    return end_of(streamer, streamer->cursor - 1) - streamer->answered_end;
+}
+
+/* The oldest line has left the receive buffer, or will have before anything more arrives, when the
+ * firmware is at work on it: a probe may take its place. */
+static int64_t bytes_behind_oldest(const fio_streamer *streamer) {
+    int64_t oldest = end_of(streamer, streamer->answered + 1) - streamer->answered_end;
+    return fio_window_bytes(streamer) - oldest;
+}
+
+bool fio_window_open(const fio_streamer *streamer, size_t length) {
+    const fio_stream_options *options = &streamer->options;
+    int64_t lines = fio_window_lines(streamer);
+    if (lines <= 0)
+        return true;
+    bool told = options->window_lines > 0 || options->window_bytes > 0;
+    int64_t most_bytes = options->window_bytes > 0 ? options->window_bytes
+                         : told                    ? INT64_MAX / 2
+                                                   : streamer->firmware.receive_bytes;
+    int64_t most_lines = options->window_lines > 0 ? options->window_lines
+                         : told                    ? INT64_MAX / 2
+                                                   : streamer->firmware.command_slots;
+    if (!told && most_bytes <= 0)
+        most_lines = 1;
+    if (streamer->recovery.allow_one) {
+        bool fits = bytes_behind_oldest(streamer) + (int64_t)length <= most_bytes;
+        return most_bytes <= 0 || fits || streamer->recovery.stalls > 2;
+    }
+    return lines < most_lines && fio_window_bytes(streamer) + (int64_t)length <= most_bytes;
+}
+
+/* The shortest trips of 32 tell the link's own delay, whatever the firmware was busy with. */
+static void measure_trip(fio_streamer *streamer, const fio_sent_line *line) {
+    fio_pulse *pulse = &streamer->pulse;
+    if (!line || !(line->time <= streamer->now))
+        return;
+    double trip = streamer->now - line->time;
+    if (pulse->samples == 0 || trip < pulse->shortest)
+        pulse->shortest = trip;
+    if (pulse->trip == 0 || trip < pulse->trip)
+        pulse->trip = trip;
+    if (++pulse->samples >= 32) {
+        pulse->trip = pulse->shortest;
+        pulse->samples = 0;
+    }
+}
+
+void fio_window_set(fio_streamer *streamer, int64_t answered) {
+    if (answered >= streamer->cursor)
+        answered = streamer->cursor - 1;
+    if (answered == streamer->answered)
+        return;
+    streamer->answered_end = end_of(streamer, answered);
+    streamer->answered = answered;
+}
+
+/* An ok that names its line: believed if it agrees with the count, or with the one before it, since
+ * a bit of the number may be wrong. */
+static void take_numbered(fio_streamer *streamer, int64_t number) {
+    if (number <= streamer->accepted || number >= streamer->cursor)
+        return;
+    bool agrees = number == streamer->answered + 1 || number == streamer->claimed + 1;
+    streamer->claimed = number;
+    if (agrees)
+        fio_history_execute(streamer, number);
+    if (number > streamer->answered)
+        fio_window_set(streamer, number);
+}
+
+void fio_window_answer(fio_streamer *streamer, const fio_answer *answer) {
+    fio_recovery_progress(streamer);
+    if (!streamer->plain && answer->line >= 0) {
+        measure_trip(streamer, fio_history_line(streamer, answer->line));
+        take_numbered(streamer, answer->line);
+        return;
+    }
+    if (streamer->answered + 1 < streamer->cursor) {
+        measure_trip(streamer, fio_history_line(streamer, streamer->answered + 1));
+        fio_window_set(streamer, streamer->answered + 1);
+    }
+    fio_marker_answered(streamer, answer);
+    if (streamer->plain)
+        fio_history_execute(streamer, streamer->answered);
+}
