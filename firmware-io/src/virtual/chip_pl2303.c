@@ -19,7 +19,8 @@ enum {
     VENDORS = 128, /* the vendor's registers: 16 */
     HXN_RESET = 7,
     HXN_FLOW = 10,
-    HXN_NO_FLOW = 0x1c
+    HXN_NO_FLOW = 0x1c,
+    HXN_XON_XOFF = 0x0c
 };
 
 static bool newest(const fio_virtual_usb *device) {
@@ -80,8 +81,8 @@ static int write_register(fio_virtual_usb *device, const fio_setup *setup) {
     }
     if (setup->value == HXN_RESET)
         device->incoming_size = device->outgoing_size = 0;
-    device->ready =
-        (device->registers[VENDORS + HXN_FLOW] & HXN_NO_FLOW) == HXN_NO_FLOW; /* no CTS here */
+    uint8_t flow = device->registers[VENDORS + HXN_FLOW] & HXN_NO_FLOW;
+    device->ready = flow == HXN_NO_FLOW || flow == HXN_XON_XOFF; /* there is no CTS here */
     return 0;
 }
 
