@@ -7,6 +7,7 @@
 #include "base/text.h"
 
 #define INCH 25.4
+#define SOFT 170. /* °C: colder than this usual limit no firmware lets filament move */
 
 /* mm/min of the moves back to the part. */
 enum { LIFT_FEEDRATE = 600, TRAVEL_FEEDRATE = 6000, PRIME_FEEDRATE = 1800 };
@@ -358,15 +359,13 @@ size_t fio_track_restore(const fio_track *track, bool homing, double lift, doubl
     bool there = track->known[0] && track->known[1] && track->known[2] && track->homed;
     if (there)
         put_moves(&out, track, homing, lift);
-    if (there && prime > 0 && track->nozzle[track->tool] > 0) {
+    if (there && prime > 0 && track->nozzle[track->tool] >= SOFT) {
         put(&out, "M83\nG1 E", prime, 4);
         put(&out, " F", PRIME_FEEDRATE, 0);
         fio_text_string(&out, "\n");
     }
-    if (track->known[3] || track->relative_extrusion) {
-        put(&out, "G92 E", track->position[3], 5);
-        fio_text_string(&out, "\n");
-    }
+    put(&out, "G92 E", track->position[3], 5);
+    fio_text_string(&out, "\n");
     put_settings(&out, track);
     return out.length;
 }

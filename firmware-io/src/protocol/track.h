@@ -42,7 +42,7 @@ void fio_track_follow(fio_track *track, const char *command, size_t length);
  * `homing`: the firmware was reset and knows no position. It is told the height it stands at
  * (position[2] + raised, which must still be true), goes up, and homes x and y; never z, where the
  * part is. Nothing moves if the job had not homed yet: it will do that itself. Nothing is primed
- * unless the nozzle is to be hot. */
+ * unless the nozzle is to be 170 °C hot. */
 enum { FIO_TRACK_TEXT = 1024 };
 size_t fio_track_restore(const fio_track *track, bool homing, double lift, double prime,
                          char *text);
