@@ -3,10 +3,12 @@
 #include <errno.h>
 #include <math.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
-void fio_link_begin(fio_link *link, int file) {
+void fio_link_begin(fio_link *link, int file, bool is_socket) {
     link->file = file;
+    link->is_socket = is_socket;
     link->in_at = link->in_size = link->out_at = link->out_size = 0;
     link->full = link->no_more = link->held_back = false;
 }
@@ -42,6 +44,16 @@ static void hear(fio_link *link, fio_standin *standin, double now, bool readable
     }
 }
 
+/* Without a signal if nobody listens any more. */
+static ssize_t put_out(const fio_link *link, const uint8_t *bytes, size_t size) {
+    if (link->no_more) {
+        errno = EPIPE;
+        return -1;
+    }
+    return link->is_socket ? send(link->file, bytes, size, MSG_NOSIGNAL)
+                           : write(link->file, bytes, size);
+}
+
 static void tell(fio_link *link, fio_standin *standin, double now) {
     link->full = false;
     for (;;) {
@@ -51,10 +63,7 @@ static void tell(fio_link *link, fio_standin *standin, double now) {
         }
         if (link->out_at == link->out_size)
             return;
-        ssize_t put = -1;
-        errno = EPIPE;
-        if (!link->no_more)
-            put = write(link->file, link->out + link->out_at, link->out_size - link->out_at);
+        ssize_t put = put_out(link, link->out + link->out_at, link->out_size - link->out_at);
         if (put < 0 && (errno == EAGAIN || errno == EINTR)) {
             link->full = true;
             return;

@@ -6,6 +6,7 @@
 
 typedef struct fio_link {
     int file; /* -1: nobody is there */
+    bool is_socket;
     size_t in_at, in_size, out_at, out_size;
     bool held_back; /* the machine has no room: what is not read has not left the host */
     bool full;      /* the host takes no more */
@@ -13,7 +14,7 @@ typedef struct fio_link {
     uint8_t in[1024], out[4096];
 } fio_link;
 
-void fio_link_begin(fio_link *link, int file);
+void fio_link_begin(fio_link *link, int file, bool is_socket);
 
 /* Move bytes both ways between the descriptor and the machine. `readable`: there may be something
  * to read. False once the host is gone and all it sent has been passed on. */

@@ -24,6 +24,7 @@ typedef struct terminal {
     int64_t rate;
     char name[64];
     char alias[192]; /* the symbolic link; "" */
+    bool linked;     /* it was made, so it is ours to remove */
 } terminal;
 
 static int64_t rate_of(speed_t speed) {
@@ -68,7 +69,7 @@ static bool is_open(const terminal *pty) {
 
 static void host_came(terminal *pty, double now) {
     fio_standin *standin = &pty->standin;
-    fio_link_begin(&pty->link, pty->master);
+    fio_link_begin(&pty->link, pty->master, false);
     standin->connected = true;
     standin->sessions++;
     pty->rate = 0;
@@ -154,15 +155,18 @@ static void drop(terminal *pty) {
     if (pty->opens >= 0)
         close(pty->opens);
     pty->master = pty->opens = -1;
-    if (pty->alias[0])
+    if (pty->linked)
         unlink(pty->alias);
+    pty->linked = false;
 }
 
 static fio_status name_it(terminal *pty) {
     if (!pty->alias[0])
         return FIO_OK;
-    char target[8];
-    if (readlink(pty->alias, target, sizeof target) >= 0)
+    static const char terminals[] = "/dev/pts/";
+    char target[64] = "";
+    if (readlink(pty->alias, target, sizeof target - 1) > 0 &&
+        strncmp(target, terminals, strlen(terminals)) == 0)
         unlink(pty->alias); /* one that was left over */
     if (symlink(pty->name, pty->alias) != 0)
         return fio_fail(FIO_NOT_WRITTEN, "%s: can't be made a link to %s: %s", pty->alias,

@@ -32,7 +32,7 @@ static void welcome(server *s, double now) {
     int file = fio_listen_accept(s->listener);
     if (file < 0)
         return;
-    fio_link_begin(&s->link, file);
+    fio_link_begin(&s->link, file, true);
     s->standin.connected = true;
     s->standin.sessions++;
     fio_machine_set_lines(s->standin.machine, now, true, true);
