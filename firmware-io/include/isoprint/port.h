@@ -23,7 +23,11 @@ typedef struct fio_port {
 typedef struct fio_port_options {
     int64_t rate;    /* bits/s: 115200. Ignored where there is no wire (native USB, sockets) */
     bool keep_lines; /* open without raising DTR and RTS, so that a board does not reset */
-    const char *virtual_options; /* of the printer behind "virtual", NULL: none */
+    /* Of the printer behind "virtual", NULL: none. "NAME=NUMBER …", parted by blanks or commas:
+     * members of fio_machine_options and of its faults ("flip_in=0.01, seed=3"), "firmware=NAME",
+     * and "speed", as fio_machine_transport() takes it: 1. Its wire runs at `rate` unless
+     * "rate=…" says otherwise. */
+    const char *virtual_options;
 } fio_port_options;
 
 FIO_API fio_port_options fio_port_options_defaults(void);

@@ -28,9 +28,8 @@ static void base_name(char *name, size_t capacity, const fio_usb_found *found) {
 }
 
 /* Whether its serial number tells it from all others. */
-static bool unique(const fio_usb_found *found, const fio_port_table *table) {
-    char name[128], other[128];
-    base_name(name, sizeof name, found);
+static bool unique(const char *name, const fio_usb_found *found, const fio_port_table *table) {
+    char other[128];
     for (int i = 0; i < table->found_count; i++) {
         base_name(other, sizeof other, &table->found[i]);
         if (&table->found[i] != found && strcmp(name, other) == 0)
@@ -74,11 +73,12 @@ static void describe_usb(fio_port *port, const fio_usb_found *found, const fio_p
     const char *board = fio_serial_board(found->vendor, found->product, &certain);
     if (!board)
         board = found->label[0] ? found->label : "serial port";
-    if (unique(found, table))
-        base_name(port->name, sizeof port->name, found);
-    else
-        snprintf(port->name, sizeof port->name, "usb:%04x:%04x@%s", found->vendor, found->product,
+    char name[sizeof port->name];
+    base_name(name, sizeof name, found);
+    if (!unique(name, found, table))
+        snprintf(name, sizeof name, "usb:%04x:%04x@%s", found->vendor, found->product,
                  found->place);
+    memcpy(port->name, name, sizeof name);
     snprintf(port->driver, sizeof port->driver, "%s", found->link.driver->name);
     snprintf(port->board, sizeof port->board, "%s", board);
     snprintf(port->serial, sizeof port->serial, "%s", found->serial);
