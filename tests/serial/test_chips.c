@@ -2,6 +2,7 @@
  * the chip comes out as the rate and the lines that were asked for, and the printer answers. */
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "check.h"
 #include "serial/link.h"
 
@@ -244,6 +245,45 @@ static void test_options(void) {
     link_unplug(l);
 }
 
+static void test_a_pulled_plug(void) {
+    fio_machine_options options = fio_machine_options_defaults();
+    options.script = "at time 0.05 unplug for 0.1";
+    fio_machine *machine = NULL;
+    fio_virtual_usb *device = NULL;
+    CHECK_EQUAL(FIO_OK, fio_machine_create(&machine, &options));
+    CHECK_EQUAL(FIO_OK, fio_virtual_usb_create(&device, machine,
+                                               &(fio_virtual_usb_options){.chip = "cp2102"}));
+    static const uint8_t setup[8] = {0x80, 6, 0, 1, 0, 0, 18, 0},
+                         configuration[8] = {0x80, 8, 0, 0, 0, 0, 1, 0},
+                         configure[8] = {0x00, 9, 1, 0, 0, 0, 0, 0};
+    uint8_t data[64];
+    CHECK_EQUAL(0, fio_virtual_usb_control(device, 0.01, configure, data, 0));
+    CHECK_EQUAL(1, fio_virtual_usb_control(device, 0.01, configuration, data, sizeof data));
+    CHECK_EQUAL(1, data[0]);
+    CHECK_EQUAL(18, fio_virtual_usb_control(device, 0.01, setup, data, sizeof data));
+    CHECK_EQUAL(FIO_USB_GONE, fio_virtual_usb_control(device, 0.06, setup, data, sizeof data));
+    CHECK_EQUAL(FIO_USB_GONE, fio_virtual_usb_in(device, 0.07, 0x81, data, sizeof data));
+    CHECK_EQUAL(FIO_USB_GONE, fio_virtual_usb_out(device, 0.08, 0x01, data, 1));
+    CHECK_EQUAL(18, fio_virtual_usb_control(device, 0.2, setup, data, sizeof data));
+    CHECK_EQUAL(1, fio_virtual_usb_control(device, 0.2, configuration, data, sizeof data));
+    CHECK_EQUAL(0, data[0]); /* it has forgotten all */
+    fio_virtual_usb_free(device);
+    fio_machine_free(machine);
+}
+
+static void test_no_memory(void) {
+    fio_machine_options options = fio_machine_options_defaults();
+    fio_machine *machine = NULL;
+    fio_virtual_usb *device = NULL;
+    CHECK_EQUAL(FIO_OK, fio_machine_create(&machine, &options));
+    fio_fail_allocation_after(0);
+    CHECK_EQUAL(FIO_NO_MEMORY, fio_virtual_usb_create(&device, machine,
+                                                      &(fio_virtual_usb_options){.chip = "ftdi"}));
+    fio_fail_allocation_after(-1);
+    CHECK(!device);
+    fio_machine_free(machine);
+}
+
 /* Whatever is asked, the answer fits what was asked for, and the device stays in one piece. */
 static void test_requests_of_any_kind(void) {
     for (int i = 0; i < CHIPS; i++) {
@@ -282,6 +322,8 @@ int main(void) {
     RUN(test_empty_packets_end_transfers);
     RUN(test_standard_requests);
     RUN(test_options);
+    RUN(test_a_pulled_plug);
+    RUN(test_no_memory);
     RUN(test_requests_of_any_kind);
     return check_verdict();
 }

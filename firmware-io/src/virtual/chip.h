@@ -42,6 +42,7 @@ struct fio_virtual_usb {
     int descriptor_size;
     uint8_t configuration;
     bool in_halted, out_halted;
+    bool gone; /* pulled out */
 
     /* The chips' own. */
     uint8_t registers[256];

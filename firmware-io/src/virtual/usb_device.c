@@ -98,6 +98,17 @@ static void describe(fio_virtual_usb *device, const fio_virtual_usb_options *opt
     device->descriptors[DEVICE_SIZE + 3] = (uint8_t)(total >> 8);
 }
 
+/* As it is when it gets its power. */
+static void power_up(fio_virtual_usb *device) {
+    memset(device->registers, 0, sizeof device->registers);
+    device->ready = device->chip->ready;
+    device->dtr = device->rts = false;
+    device->configuration = 0;
+    device->in_halted = device->out_halted = device->last_was_full = device->refused = false;
+    device->outgoing_size = device->incoming_size = 0;
+    device->latency = 0.016;
+}
+
 fio_status fio_virtual_usb_create(fio_virtual_usb **made, fio_machine *machine,
                                   const fio_virtual_usb_options *options) {
     *made = NULL;
@@ -119,9 +130,8 @@ fio_status fio_virtual_usb_create(fio_virtual_usb **made, fio_machine *machine,
     *device = (fio_virtual_usb){.chip = chip,
                                 .machine = machine,
                                 .trace = options->trace,
-                                .trace_context = options->trace_context,
-                                .ready = chip->ready,
-                                .latency = 0.016};
+                                .trace_context = options->trace_context};
+    power_up(device);
     snprintf(device->serial, sizeof device->serial, "%s", serial);
     describe(device, options);
     *made = device;
@@ -264,14 +274,25 @@ static int standard_request(fio_virtual_usb *device, const fio_setup *setup, uin
     }
 }
 
+/* The chip lives on the bus's power: plugged in again, it has forgotten all. */
+static bool present(fio_virtual_usb *device, double now) {
+    fio_machine_advance(device->machine, now);
+    bool plugged = fio_machine_plugged(device->machine);
+    if (plugged && device->gone) {
+        power_up(device);
+        fio_machine_set_lines(device->machine, now, false, false);
+    }
+    device->gone = !plugged;
+    return plugged;
+}
+
 int fio_virtual_usb_control(fio_virtual_usb *device, double now, const uint8_t bytes[8],
                             uint8_t *data, int capacity) {
-    if (!fio_machine_plugged(device->machine))
+    if (!present(device, now))
         return FIO_USB_GONE;
     fio_setup setup = {bytes[0], bytes[1], (uint16_t)(bytes[2] | bytes[3] << 8),
                        (uint16_t)(bytes[4] | bytes[5] << 8), (uint16_t)(bytes[6] | bytes[7] << 8)};
     int moved = FIO_USB_STALL;
-    fio_machine_advance(device->machine, now);
     if ((setup.type & 0x80) && setup.length > capacity)
         setup.length = (uint16_t)(capacity > 0 ? capacity : 0);
     if (setup.length <= capacity || setup.length == 0)
@@ -294,11 +315,10 @@ static void push(fio_virtual_usb *device, double now) {
 
 int fio_virtual_usb_out(fio_virtual_usb *device, double now, uint8_t endpoint, const uint8_t *bytes,
                         int size) {
-    if (!fio_machine_plugged(device->machine))
+    if (!present(device, now))
         return FIO_USB_GONE;
     if (endpoint != device->chip->out || device->out_halted || size > device->chip->packet)
         return FIO_USB_STALL;
-    fio_machine_advance(device->machine, now);
     push(device, now);
     if (device->outgoing_size > 0)
         return FIO_USB_NAK;
@@ -337,13 +357,12 @@ static int status_packet(fio_virtual_usb *device, double now, uint8_t *bytes) {
 
 int fio_virtual_usb_in(fio_virtual_usb *device, double now, uint8_t endpoint, uint8_t *bytes,
                        int capacity) {
-    if (!fio_machine_plugged(device->machine))
+    if (!present(device, now))
         return FIO_USB_GONE;
     if (device->chip->interrupt && endpoint == device->chip->interrupt)
         return FIO_USB_NAK;
     if (endpoint != device->chip->in || device->in_halted || capacity < device->chip->packet)
         return FIO_USB_STALL;
-    fio_machine_advance(device->machine, now);
     push(device, now);
     pull(device, now);
     if (device->chip->status_bytes)
