@@ -27,6 +27,7 @@ static void test_errors_say_where(void) {
     expect_error("from line 10 reset", "column 14: after \"from\"");
     expect_error("after 3 cows reset", "column 9: seconds, lines, bytes or oks");
     expect_error("after 0 oks reset", "column 7: this number is too small");
+    expect_error("every 0.001 seconds reset", "column 1: nothing happens more often");
     expect_error("at line 1 reset; at line 2 lose ok 0", "column 36: this number is too small");
     char many[6000] = "";
     for (int i = 0; i <= FIO_SCRIPT_STEPS; i++)
@@ -219,8 +220,10 @@ static void test_heaters_that_break(void) {
 
 static void test_a_person_presses(void) {
     bench *b = bench_script("at time 30 press");
-    bench_expect(b, "M113 S0\nM0\n", 29, "ok\n");
-    bench_expect(b, "", 2, "ok\n");
+    bench_expect(b, "M113 S0\nM0\n", 29,
+                 "ok\n//action:prompt_begin M0/1 Break Called\n//action:prompt_button Continue\n"
+                 "//action:prompt_show\n");
+    bench_expect(b, "", 2, "//action:prompt_end\nok\n");
     bench_free(b);
 }
 

@@ -13,6 +13,10 @@
 
 void fio_firmware_reset(fio_machine *machine) {
     fio_printer_reset(machine->printer);
+    fio_firmware_load_settings(machine);
+    machine->card.saving = machine->card.printing = false;
+    machine->card.open = -1;
+    machine->card_seconds = 0;
     machine->counts.resets++;
     machine->received_first = machine->received_last;
     machine->reader = (fio_reader){0};
@@ -22,6 +26,7 @@ void fio_firmware_reset(fio_machine *machine) {
     machine->queued = 0;
     machine->busy_seconds = machine->options.busy_seconds;
     machine->temperature_seconds = machine->position_seconds = 0;
+    machine->prompting = false;
     machine->processor = FIO_BOOTING;
     machine->until = machine->now + machine->options.boot_seconds;
     fio_wire_discard(&machine->out, machine->now);
@@ -64,6 +69,7 @@ void fio_firmware_kill(fio_machine *machine, const char *error) {
     fio_firmware_say(machine, "//action:poweroff");
     machine->processor = FIO_HALTED;
     machine->queued = 0;
+    machine->card.printing = machine->card.saving = false;
 }
 
 bool fio_firmware_may_receive(const fio_machine *machine) {
@@ -145,6 +151,16 @@ static void act_early(fio_machine *machine, const char *text) {
         fio_firmware_emergency(machine, FIO_EMERGENCY_STOP);
 }
 
+static fio_queued *enqueue(fio_machine *machine, const fio_reader *reader) {
+    int slot = (machine->oldest + machine->queued++) % machine->options.command_slots;
+    fio_queued *queued = &machine->queue[slot];
+    memcpy(queued->text, reader->text, (size_t)reader->length + 1);
+    queued->length = reader->length;
+    queued->cut = reader->cut;
+    queued->tainted = queued->silent = false;
+    return queued;
+}
+
 static void take_line(fio_machine *machine) {
     fio_reader *reader = &machine->reader;
     fio_virtual_printer *printer = machine->printer;
@@ -164,6 +180,9 @@ static void take_line(fio_machine *machine) {
         printer->statistics.duplicate_lines++;
         return;
     }
+    if (verdict == FIO_LINE_GOOD && machine->card.saving && *reader->text != 'N' &&
+        strncmp(reader->text, "M29", 3))
+        verdict = FIO_LINE_UNCHECKED; /* what is written to a file shall be what was sent */
     if (verdict != FIO_LINE_GOOD) {
         fio_firmware_reject(machine, verdict);
         return;
@@ -173,13 +192,7 @@ static void take_line(fio_machine *machine) {
     act_early(machine, reader->text);
     if (machine->processor == FIO_HALTED)
         return;
-    int slot = (machine->oldest + machine->queued++) % machine->options.command_slots;
-    fio_queued *queued = &machine->queue[slot];
-    memcpy(queued->text, reader->text, (size_t)reader->length + 1);
-    queued->length = reader->length;
-    queued->cut = reader->cut;
-    queued->tainted = is_tainted(machine);
-    queued->silent = false;
+    enqueue(machine, reader)->tainted = is_tainted(machine);
 }
 
 static void read_lines(fio_machine *machine) {
@@ -194,6 +207,20 @@ static void read_lines(fio_machine *machine) {
             machine->taint_at = INT32_MAX;
         }
     }
+    while (machine->queued < machine->options.command_slots && fio_firmware_card_line(machine))
+        enqueue(machine, &machine->card_reader)->silent = true;
+}
+
+/* A wait for a person asks the host to ask. */
+static void prompt(fio_machine *machine) {
+    machine->prompting = machine->printer->wait_user && isinf(machine->printer->wait_end);
+    if (!machine->prompting)
+        return;
+    fio_firmware_say(machine, machine->line.code == 600
+                                  ? "//action:prompt_begin Nozzle Parked"
+                                  : "//action:prompt_begin M0/1 Break Called");
+    fio_firmware_say(machine, "//action:prompt_button Continue");
+    fio_firmware_say(machine, "//action:prompt_show");
 }
 
 static void begin(fio_machine *machine) {
@@ -211,21 +238,26 @@ static void begin(fio_machine *machine) {
         machine->counts.undetectable++;
     if (printer->halted)
         machine->processor = FIO_HALTED;
-    else if (printer->waiting)
+    else if (printer->waiting) {
         machine->processor = FIO_WAITING;
-    else
+        prompt(machine);
+    } else
         machine->processor = FIO_CHORDS;
     machine->wait_report_at = machine->now + HEATING_REPORT_SECONDS;
 }
 
-static void finish(fio_machine *machine) {
-    fio_virtual_printer *printer = machine->printer;
-    fio_printer_end_entry(printer);
-    if (!machine->queue[machine->oldest].silent && !printer->answered && !machine->answered)
+/* The oldest command is done: say so, and forget it. */
+static void answer(fio_machine *machine, bool answered) {
+    if (!machine->queue[machine->oldest].silent && !answered)
         fio_firmware_ok(machine);
     machine->oldest = (machine->oldest + 1) % machine->options.command_slots;
     machine->queued--;
     machine->processor = FIO_IDLE;
+}
+
+static void finish(fio_machine *machine) {
+    fio_printer_end_entry(machine->printer);
+    answer(machine, machine->printer->answered || machine->answered);
 }
 
 static void boot(fio_machine *machine) {
@@ -273,6 +305,10 @@ static bool turn(fio_machine *machine) {
                       machine->queue[machine->oldest].length, machine->options.case_insensitive);
         machine->busy_at = machine->now + machine->busy_seconds;
         machine->processor = FIO_BLOCKED;
+        if (machine->card.saving && !machine->queue[machine->oldest].silent) {
+            fio_firmware_save_line(machine, &machine->line);
+            answer(machine, false);
+        }
         return true;
     case FIO_BLOCKED:
         read_lines(machine);
@@ -296,6 +332,9 @@ static bool turn(fio_machine *machine) {
         if (machine->processor != FIO_WAITING || machine->now < printer->wait_end)
             return false;
         fio_printer_end_wait(printer);
+        if (machine->prompting)
+            fio_firmware_say(machine, "//action:prompt_end");
+        machine->prompting = false;
         machine->processor = FIO_CHORDS;
         return true;
     default:

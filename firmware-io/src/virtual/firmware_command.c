@@ -13,14 +13,28 @@ static void say_identity(fio_machine *machine) {
     fio_text_string(&text, " UUID:cede2a2f-41a2-4748-9b12-c55c62f367ff");
     fio_firmware_say(machine, bytes);
     static const char *const capabilities[] = {
-        "SERIAL_XON_XOFF:0", "BINARY_FILE_TRANSFER:0",
-        "EEPROM:1",          "VOLUMETRIC:0",
-        "AUTOREPORT_POS:1",  "AUTOREPORT_TEMP:1",
-        "PROGRESS:0",        "PRINT_JOB:1",
-        "AUTOLEVEL:0",       "RUNOUT:0",
-        "Z_PROBE:0",         "LEVELING_DATA:0",
-        "BUILD_PERCENT:1",   "SOFTWARE_POWER:0",
-        "TOGGLE_LIGHTS:0",   "CASE_LIGHT_BRIGHTNESS:0",
+        "SERIAL_XON_XOFF:0",
+        "BINARY_FILE_TRANSFER:0",
+        "EEPROM:1",
+        "VOLUMETRIC:0",
+        "AUTOREPORT_POS:1",
+        "AUTOREPORT_TEMP:1",
+        "PROGRESS:0",
+        "PRINT_JOB:1",
+        "AUTOLEVEL:0",
+        "RUNOUT:0",
+        "Z_PROBE:0",
+        "BUILD_PERCENT:1",
+        "SOFTWARE_POWER:0",
+        "HOST_ACTION_COMMANDS:1",
+        "PROMPT_SUPPORT:1",
+        "SDCARD:1",
+        "SD_WRITE:1",
+        "AUTOREPORT_SD_STATUS:1",
+        "LONG_FILENAME:1",
+        "THERMAL_PROTECTION:1",
+        "ARCS:1",
+        "MEATPACK:1",
     };
     for (size_t i = 0; i < sizeof capabilities / sizeof *capabilities; i++) {
         text = fio_text_in(bytes, sizeof bytes);
@@ -44,11 +58,11 @@ static void say_temperatures(fio_machine *machine) {
 }
 
 /* S of an automatic report: seconds, at most a minute. */
-static void set_interval(const fio_machine *machine, const fio_line *line, double *seconds,
-                         double *at) {
+void fio_firmware_set_interval(const fio_machine *machine, const fio_line *line, double *seconds,
+                               double *at) {
     if (!fio_line_has(line, 'S'))
         return;
-    *seconds = fmin(fmax(fio_line_value(line, 'S'), 0), 60);
+    *seconds = floor(fmin(fmax(fio_line_value(line, 'S'), 0), 60));
     *at = machine->now + *seconds;
 }
 
@@ -56,7 +70,7 @@ static void keep_alive(fio_machine *machine, const fio_line *line) {
     char bytes[32];
     fio_text text = fio_text_in(bytes, sizeof bytes);
     if (fio_line_has(line, 'S')) {
-        machine->busy_seconds = fmin(fmax(fio_line_value(line, 'S'), 0), 60);
+        machine->busy_seconds = floor(fmin(fmax(fio_line_value(line, 'S'), 0), 60));
         machine->busy_at = machine->now + machine->busy_seconds;
         return;
     }
@@ -84,13 +98,14 @@ bool fio_firmware_command(void *context, const fio_line *line) {
         say_identity(machine);
         return true;
     case 154:
-        set_interval(machine, line, &machine->position_seconds, &machine->position_at);
+        fio_firmware_set_interval(machine, line, &machine->position_seconds, &machine->position_at);
         return true;
     case 155:
-        set_interval(machine, line, &machine->temperature_seconds, &machine->temperature_at);
+        fio_firmware_set_interval(machine, line, &machine->temperature_seconds,
+                                  &machine->temperature_at);
         return true;
     default:
-        return false;
+        return fio_firmware_setting(machine, line->code) || fio_firmware_card(machine, line);
     }
 }
 
@@ -108,6 +123,11 @@ void fio_firmware_reports(fio_machine *machine) {
         fio_printer_say_position(machine->printer);
         machine->position_at = machine->now + machine->position_seconds;
     }
+    if (machine->card_seconds > 0 && machine->now >= machine->card_at) {
+        if (machine->card.printing)
+            fio_firmware_say_progress(machine);
+        machine->card_at = machine->now + machine->card_seconds;
+    }
 }
 
 double fio_firmware_next_report(const fio_machine *machine) {
@@ -116,5 +136,7 @@ double fio_firmware_next_report(const fio_machine *machine) {
         next = machine->temperature_at;
     if (machine->position_seconds > 0)
         next = fmin(next, machine->position_at);
+    if (machine->card_seconds > 0)
+        next = fmin(next, machine->card_at);
     return next;
 }

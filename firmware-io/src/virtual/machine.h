@@ -4,6 +4,7 @@
 
 #include <isoprint/machine.h>
 
+#include "virtual/card.h"
 #include "virtual/printer.h"
 #include "virtual/random.h"
 #include "virtual/reader.h"
@@ -52,6 +53,12 @@ typedef struct fio_plan {
     int64_t miscount;
 } fio_plan;
 
+/* What M500 keeps. */
+typedef struct fio_settings {
+    fio_limits limits;
+    double retract[2];
+} fio_settings;
+
 /* Of one heater's thermal protection. */
 typedef struct fio_watch {
     double target, at, temperature, runaway_at;
@@ -78,13 +85,20 @@ struct fio_machine {
 
     fio_queued queue[FIO_SLOTS_MOST];
     int queued, oldest;
-    fio_line line; /* of queue[oldest], being executed */
-    bool answered; /* its ok was said before it was executed */
+    fio_line line;  /* of queue[oldest], being executed */
+    bool answered;  /* its ok was said before it was executed */
+    bool prompting; /* the host was told to ask its user */
     fio_processor processor;
     double until, busy_at, busy_seconds;
     double wait_report_at;
     double temperature_seconds, temperature_at; /* M155; 0: off */
     double position_seconds, position_at;       /* M154 */
+
+    double card_seconds, card_at; /* M27 S */
+    fio_settings defaults, kept;
+    bool stored; /* `kept` is valid */
+    fio_card card;
+    fio_reader card_reader;
 
     fio_random random;                  /* of the faults */
     int line_length, last_line_length;  /* bytes of the line now arriving, and of the one before */
@@ -131,6 +145,20 @@ double fio_thermal_next(const fio_machine *machine);
 bool fio_firmware_command(void *machine, const fio_line *line);
 void fio_firmware_reports(fio_machine *machine); /* what is due of itself */
 double fio_firmware_next_report(const fio_machine *machine);
+
+void fio_firmware_set_interval(const fio_machine *machine, const fio_line *line, double *seconds,
+                               double *at);
+
+/* firmware_card.c: false: not a command of the card. */
+bool fio_firmware_card(fio_machine *machine, const fio_line *line);
+void fio_firmware_say_progress(fio_machine *machine);
+void fio_firmware_save_line(fio_machine *machine, const fio_line *line);
+bool fio_firmware_card_line(fio_machine *machine); /* the next one is in card_reader */
+
+/* firmware_setting.c */
+bool fio_firmware_setting(fio_machine *machine, int code);
+void fio_firmware_keep_defaults(fio_machine *machine);
+void fio_firmware_load_settings(fio_machine *machine);
 
 /* firmware_answer.c */
 void fio_firmware_say(fio_machine *machine, const char *text);

@@ -6,6 +6,8 @@
 
 #include "base/number.h"
 
+#define LEAST_REPETITION 0.01 /* s: the machine shall come to something else, too */
+
 /* What follows the words of an action. */
 typedef enum argument {
     NOTHING,
@@ -298,6 +300,8 @@ static fio_status read_step(fio_script *script, cursor *here) {
     } else if (take_words(here, "every")) {
         status = take_amount(here, &step.moment, &step.every);
         step.at = step.every;
+        if (status == FIO_OK && step.every < LEAST_REPETITION)
+            status = complain(&start, "nothing happens more often than every 0.01 s");
     } else
         return complain(here, "a step begins with at, after, every or from");
     if (status == FIO_OK)
