@@ -116,7 +116,7 @@ static void a_crowd(void) {
         add_usb(name, place, true);
     }
     CHECK_EQUAL(FIO_NO_PRINTER, fio_port_choose(&chosen, table));
-    CHECK(says("there are 64 ports"));
+    CHECK(says("there are 256 ports"));
 }
 
 static void names(void) {

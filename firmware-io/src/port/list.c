@@ -31,8 +31,11 @@ static void base_name(char *name, size_t capacity, const fio_usb_found *found) {
 static bool unique(const char *name, const fio_usb_found *found, const fio_port_table *table) {
     char other[128];
     for (int i = 0; i < table->found_count; i++) {
-        base_name(other, sizeof other, &table->found[i]);
-        if (&table->found[i] != found && strcmp(name, other) == 0)
+        const fio_usb_found *one = &table->found[i];
+        if (one == found || one->vendor != found->vendor || one->product != found->product)
+            continue;
+        base_name(other, sizeof other, one);
+        if (strcmp(name, other) == 0)
             return false;
     }
     return true;

@@ -6,7 +6,7 @@
 
 #include "usb/device.h"
 
-enum { FIO_PORTS_MOST = 128 };
+enum { FIO_PORTS_MOST = 2 * FIO_USB_DEVICES };
 
 /* A port and, if it is one, the USB device. */
 typedef struct fio_port_entry {

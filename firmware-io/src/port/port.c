@@ -114,8 +114,9 @@ static fio_status wait_for(const char *name, double seconds, fio_port_table *tab
     double end = fio_monotonic() + seconds, left;
     int state = look(name, table);
     fio_usb_watch *watch = NULL;
-    if (state != USABLE && searched(name) && fio_usb_watch_open(&watch) != FIO_OK)
-        watch = NULL; /* no USB here: look for ttys all the same */
+    /* To be told of events costs as much as several looks. Without USB there still are ttys. */
+    if (state != USABLE && searched(name) && seconds >= 1 && fio_usb_watch_open(&watch) != FIO_OK)
+        watch = NULL;
     while (state != USABLE && (left = end - fio_monotonic()) > 0) {
         if (!watch || fio_usb_watch_wait(watch, left < 0.2 ? left : 0.2) != FIO_OK)
             poll(NULL, 0, fio_poll_milliseconds(left < 0.1 ? left : 0.1));

@@ -9,7 +9,7 @@
 
 #include "serial/serial.h"
 
-enum { FIO_USB_DEVICES = 64 };
+enum { FIO_USB_DEVICES = 256 };
 
 typedef struct fio_usb_found {
     char place[32]; /* "1-2.3": bus and ports */
