@@ -14,7 +14,7 @@
  * is all that surely fits anywhere. Repetier's documentation asks hosts not to exceed 63 bytes;
  * grbl counts on 127; Klipper and RepRapFirmware hold the host back themselves. */
 static const fio_firmware firmwares[FIO_FIRMWARE_KINDS] = {
-    [FIO_FIRMWARE_UNKNOWN] = {.kind = FIO_FIRMWARE_KINDS,
+    [FIO_FIRMWARE_UNKNOWN] = {.kind = FIO_FIRMWARE_UNKNOWN,
                               .name = "unknown",
                               .identity = "",
                               .numbered = true,
