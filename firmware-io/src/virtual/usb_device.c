@@ -377,6 +377,8 @@ int fio_virtual_usb_in(fio_virtual_usb *device, double now, uint8_t endpoint, ui
 }
 
 double fio_virtual_usb_next(const fio_virtual_usb *device) {
-    double next = device->ready ? fio_machine_next(device->machine) : INFINITY;
+    /* What a chip that is not set up yet receives is not to be had. */
+    bool useless = !device->ready && fio_machine_readable(device->machine);
+    double next = useless ? INFINITY : fio_machine_next(device->machine);
     return device->refused ? fmin(next, device->status_due) : next;
 }
