@@ -26,14 +26,12 @@ struct virtual_check {
 
 /* Commands that a host sends of itself while it prints, and those by which it brings a printer back
  * to where it was. */
-static const char always[] = "M105,M110,M113,M114,M115,M154,M155,M27,M31,M400,M876,M108";
+static const char always[] = "M27,M31,M105,M108,M110,M113,M114,M115,M118,M154,M155,M400,M876";
 static const char restoring[] = "G0,G1,G4,G20,G21,G28,G90,G91,G92,M17,M18,M82,M83,M84,M104,M106,"
                                 "M107,M109,M117,M140,M190,M204,M211,M220,M221,M413,T0,T1,T2,T3";
 
 static bool is_among(const char *list, const char *command) {
-    size_t length = 1;
-    while (isdigit((unsigned char)command[length]) || command[length] == '.')
-        length++;
+    size_t length = strcspn(command, " ");
     while (list && *list) {
         size_t word = strcspn(list, ",");
         if (word == length && strncmp(list, command, word) == 0)
@@ -43,21 +41,41 @@ static bool is_among(const char *list, const char *command) {
     return false;
 }
 
-/* Without blanks, comments, line number and checksum, which are the way's and not the file's. */
-static void normalise(char *to, const char *from, size_t length) {
-    size_t at = 0, size = 0;
-    while (at < length && isspace((unsigned char)from[at]))
+/* Past blanks, and a line number if there is one: then *length is cut at the checksum. */
+static size_t after_number(const char *from, size_t *length) {
+    size_t at = 0;
+    while (at < *length && isspace((unsigned char)from[at]))
         at++;
-    if (at + 1 < length && from[at] == 'N' && isdigit((unsigned char)from[at + 1])) {
-        for (at++; at < length && isdigit((unsigned char)from[at]);)
-            at++;
-        const char *star = memchr(from + at, '*', length - at);
-        length = star ? (size_t)(star - from) : length;
-    }
-    for (int depth = 0; at < length && from[at] != ';' && size < TEXT_MOST; at++) {
+    if (at + 1 >= *length || from[at] != 'N' || !isdigit((unsigned char)from[at + 1]))
+        return at;
+    while (++at < *length && isdigit((unsigned char)from[at]))
+        continue;
+    const char *star = memchr(from + at, '*', *length - at);
+    *length = star ? (size_t)(star - from) : *length;
+    while (at < *length && isspace((unsigned char)from[at]))
+        at++;
+    return at;
+}
+
+/* The command word without leading zeros, a blank, and the rest without blanks and comments: line
+ * number, checksum and spelling are the way's, not the file's. */
+static void normalise(char *to, const char *from, size_t length) {
+    size_t at = after_number(from, &length), size = 0;
+    bool word = at < length && isalpha((unsigned char)from[at]);
+    if (word)
+        to[size++] = from[at++];
+    while (word && at + 1 < length && from[at] == '0' && isdigit((unsigned char)from[at + 1]))
+        at++;
+    while (word && at < length && (isdigit((unsigned char)from[at]) || from[at] == '.') && size < 8)
+        to[size++] = from[at++];
+    size_t start = size;
+    for (int depth = 0; at < length && from[at] != ';' && size < TEXT_MOST - 1; at++) {
         depth += from[at] == '(';
-        if (depth == 0 && !isspace((unsigned char)from[at]))
+        if (depth == 0 && !isspace((unsigned char)from[at])) {
+            if (size == start && word)
+                to[size++] = ' ';
             to[size++] = from[at];
+        }
         depth -= from[at] == ')' && depth > 0;
     }
     to[size] = 0;

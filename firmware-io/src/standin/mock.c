@@ -112,8 +112,6 @@ static fio_status plug(fio_standin *standin, bool in) {
         fio_usb_host_begin(&m->host, m->device, standin->machine);
     if (!m->module->plug(m->node, in))
         return fio_fail(FIO_NOT_WRITTEN, "umockdev: the device can't be plugged in again");
-    if (in)
-        snprintf(standin->where, sizeof standin->where, "usb:%s", m->module->node(m->node));
     return FIO_OK;
 }
 
@@ -210,7 +208,9 @@ static fio_status plug_in(mock *m, const fio_mock_options *options) {
     m->node = m->module->open(&host, &device, reason);
     if (!m->node)
         return fio_fail(FIO_NOT_WRITTEN, "%s", reason);
-    snprintf(m->standin.where, sizeof m->standin.where, "usb:%s", m->module->node(m->node));
+    snprintf(m->standin.where, sizeof m->standin.where, "usb:%02x%02x:%02x%02x%s%s", bytes[9],
+             bytes[8], bytes[11], bytes[10], device.serial ? ":" : "",
+             device.serial ? device.serial : "");
     return FIO_OK;
 }
 

@@ -377,14 +377,10 @@ static fio_umockdev *open_mock(const fio_umockdev_host *host, const fio_umockdev
     return NULL;
 }
 
-static const char *node(const fio_umockdev *mock) {
-    return mock->node;
-}
-
 static void bound(const fio_umockdev *mock, int *now, int *first) {
     fio_usb_claims_count(&mock->claims, now, first);
 }
 
 extern __attribute__((visibility("default"))) const fio_umockdev_module fio_umockdev_module_table;
 const fio_umockdev_module fio_umockdev_module_table = {
-    FIO_UMOCKDEV_VERSION, open_mock, gate, plug, node, bound, close_mock};
+    FIO_UMOCKDEV_VERSION, open_mock, gate, plug, bound, close_mock};

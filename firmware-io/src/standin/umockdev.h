@@ -46,7 +46,6 @@ typedef struct fio_umockdev_module {
     void (*gate)(fio_umockdev *mock, bool open);
     /* Send the events of a device that went or came. False: it could not be put back. */
     bool (*plug)(fio_umockdev *mock, bool in);
-    const char *(*node)(const fio_umockdev *mock); /* "/dev/bus/usb/001/002" */
     /* Interfaces that Linux' driver has now, of those it had at first. */
     void (*bound)(const fio_umockdev *mock, int *now, int *first);
     void (*close)(fio_umockdev *mock);
