@@ -261,14 +261,14 @@ static void what_is_given_up_counts_what_left(void) {
     begin(&r, false);
     uint8_t bytes[300] = {0};
     CHECK_EQUAL(300, fio_usb_transfers_write(r.transfers, bytes, sizeof bytes));
-    CHECK_EQUAL(0, fio_usb_transfers_cancel(r.transfers, &r.events, false, 1));
+    CHECK_EQUAL(0, fio_usb_transfers_cancel(r.transfers, &r.events, false, 0.02));
     CHECK_EQUAL(0, fio_usb_transfers_pending(r.transfers));
     CHECK_EQUAL(4, fake_count(IN)); /* reading goes on */
 
     CHECK_EQUAL(300, fio_usb_transfers_write(r.transfers, bytes, sizeof bytes));
     CHECK(fake_end(OUT, 0, LIBUSB_TRANSFER_CANCELLED, 128, NULL));
     CHECK_EQUAL(172, fio_usb_transfers_pending(r.transfers));
-    CHECK_EQUAL(0, fio_usb_transfers_cancel(r.transfers, &r.events, false, 1));
+    CHECK_EQUAL(0, fio_usb_transfers_cancel(r.transfers, &r.events, false, 0.02));
 
     /* One that does not end may still leave. */
     CHECK_EQUAL(44, fio_usb_transfers_write(r.transfers, bytes, 44));
@@ -278,7 +278,7 @@ static void what_is_given_up_counts_what_left(void) {
     CHECK(fio_monotonic() - start >= 0.049);
     CHECK_EQUAL(44, fio_usb_transfers_pending(r.transfers));
     fake.deaf = false;
-    CHECK_EQUAL(0, fio_usb_transfers_cancel(r.transfers, &r.events, true, 1));
+    CHECK_EQUAL(0, fio_usb_transfers_cancel(r.transfers, &r.events, true, 0.02));
     CHECK_EQUAL(0, fake.count);
     end(&r);
 }
