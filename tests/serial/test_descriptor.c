@@ -264,7 +264,7 @@ static void test_bridges_by_their_ids(void) {
         {0x067b, 0x2303, "pl2303", "PL2303", false},
         {0x067b, 0x23a3, "pl2303", "PL2303GC", false},
         {0x2341, 0x0042, NULL, "Arduino Mega 2560 R3", true},
-        {0x2c99, 0x0001, NULL, "Prusa i3", true},
+        {0x2c99, 0x0001, NULL, "Prusa i3 MK2", true},
         {0x0483, 0x5740, NULL, "STM32 virtual COM port", false},
         {0x1234, 0x5678, NULL, NULL, false},
     };

@@ -34,7 +34,7 @@ enum {
 
 static bool match(fio_serial *serial, const fio_usb_device *device) {
     static const fio_usb_id ids[] = {
-        {0x10c4, 0xea60}, {0x10c4, 0xea63}, {0x10c4, 0xea70}, {0x10c4, 0xea71}};
+        {0x10c4, 0xea60}, {0x10c4, 0xea61}, {0x10c4, 0xea63}, {0x10c4, 0xea70}, {0x10c4, 0xea71}};
     return fio_usb_id_among(device, ids, sizeof ids / sizeof *ids) &&
            fio_serial_take_interface(serial, device);
 }
