@@ -294,12 +294,27 @@ static void test_a_packet_size_of_zero_is_a_clones_mistake(void) {
     CHECK_EQUAL(64, serial.out_packet);
 }
 
-static void test_ch340_is_read_packet_by_packet(void) {
-    raw bytes = raw_bridge((raw_device){0x0110, 0x1a86, 0x7523, 0x0264, 0xff, 8}, 32);
+/* A full packet must not wait for the next one, which may never come. */
+static void test_reading_packet_by_packet(void) {
+    static const struct {
+        raw_device id;
+        uint16_t packet, transfer;
+    } devices[] = {{{0x0110, 0x1a86, 0x7523, 0x0264, 0xff, 8}, 32, 32},
+                   {{0x0110, 0x10c4, 0xea60, 0x0100, 0, 64}, 64, 64},
+                   {{0x0200, 0x067b, 0x2303, 0x0400, 0, 64}, 64, 64},
+                   {{0x0200, 0x0403, 0x6001, 0x0600, 0, 8}, 64, 512}, /* status ends it */
+                   {{0x0200, 0x0403, 0x6014, 0x0900, 0, 64}, 512, 512}};
+    for (size_t i = 0; i < sizeof devices / sizeof *devices; i++) {
+        raw bytes = raw_bridge(devices[i].id, devices[i].packet);
+        fio_serial serial;
+        CHECK(match_raw(&serial, &bytes));
+        CHECK_EQUAL(devices[i].packet, serial.in_packet);
+        CHECK_EQUAL(devices[i].transfer, serial.in_transfer);
+    }
+    raw bytes = raw_mega();
     fio_serial serial;
     CHECK(match_raw(&serial, &bytes));
-    CHECK_EQUAL(32, serial.in_packet);
-    CHECK_EQUAL(32, serial.in_transfer);
+    CHECK_EQUAL(64, serial.in_transfer);
 }
 
 int main(void) {
@@ -315,6 +330,6 @@ int main(void) {
     RUN(test_what_is_no_serial_port);
     RUN(test_bridges_by_their_ids);
     RUN(test_a_packet_size_of_zero_is_a_clones_mistake);
-    RUN(test_ch340_is_read_packet_by_packet);
+    RUN(test_reading_packet_by_packet);
     return check_verdict();
 }

@@ -30,11 +30,8 @@ enum {
 static bool match(fio_serial *serial, const fio_usb_device *device) {
     static const fio_usb_id ids[] = {
         {0x1a86, 0x7523}, {0x1a86, 0x5523}, {0x1a86, 0x7522}, {0x4348, 0x5523}};
-    if (!fio_usb_id_among(device, ids, sizeof ids / sizeof *ids) ||
-        !fio_serial_take_interface(serial, device))
-        return false;
-    serial->in_transfer = serial->in_packet; /* no empty packet ends a transfer of full ones */
-    return true;
+    return fio_usb_id_among(device, ids, sizeof ids / sizeof *ids) &&
+           fio_serial_take_interface(serial, device);
 }
 
 /* rate = clock / (2^(12 - 3 prescaler - fact) divisor). Of all settings the nearest; of equals the

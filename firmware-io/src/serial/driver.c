@@ -50,8 +50,7 @@ bool fio_serial_take_endpoints(fio_serial *serial, const fio_usb_interface *inte
     serial->out = out->address;
     serial->in_packet = packet_of(in);
     serial->out_packet = packet_of(out);
-    uint16_t packets = FIO_SERIAL_IN_TRANSFER / serial->in_packet;
-    serial->in_transfer = (uint16_t)(serial->in_packet * (packets > 0 ? packets : 1));
+    serial->in_transfer = serial->in_packet;
     return true;
 }
 

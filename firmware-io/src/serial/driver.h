@@ -8,8 +8,6 @@
 extern const fio_serial_driver fio_serial_cdc_acm, fio_serial_ch34x, fio_serial_ftdi,
     fio_serial_cp210x, fio_serial_pl2303;
 
-enum { FIO_SERIAL_IN_TRANSFER = 512 }; /* bytes, where a chip ends transfers properly */
-
 typedef struct fio_usb_id {
     uint16_t vendor, product;
 } fio_usb_id;

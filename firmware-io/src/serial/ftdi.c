@@ -20,6 +20,7 @@ enum {
     DTR_ON = 0x0101,
     RTS_ON = 0x0202,
     STATUS_BYTES = 2,
+    TRANSFER = 512,     /* bytes */
     LINE_ERRORS = 0x0e, /* of the second: overrun, parity, framing */
     CHANNEL = 0         /* of state[]: 0 where there is but one */
 };
@@ -42,6 +43,8 @@ static bool match(fio_serial *serial, const fio_usb_device *device) {
     if (!fio_usb_id_among(device, ids, sizeof ids / sizeof *ids) ||
         !fio_serial_take_interface(serial, device))
         return false;
+    if (serial->in_packet < TRANSFER) /* the status packets end every transfer in time */
+        serial->in_transfer = (uint16_t)(TRANSFER - TRANSFER % serial->in_packet);
     serial->chip = chip_of(device->release);
     int others = 0;
     for (int i = 0; i < device->interface_count; i++)

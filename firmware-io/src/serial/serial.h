@@ -64,8 +64,9 @@ typedef struct fio_serial {
         interface_count; /* to claim, in this order; to be released the other way: data first */
     uint8_t in, out;     /* endpoints */
     uint16_t in_packet, out_packet; /* bytes */
-    uint16_t in_transfer; /* most bytes to ask for at once: whole packets, and only one where the
-                           * chip does not end a transfer of full packets by an empty one */
+    uint16_t in_transfer; /* bytes to ask for at once: one packet, as many chips and boards do not
+                           * end a transfer of full packets by an empty one; several where that
+                           * can't happen */
     int chip;             /* a driver's own: which variant it found */
     int64_t rate;         /* as asked for */
     int64_t line_errors;  /* bytes that the bridge itself saw arrive damaged, or lost */
