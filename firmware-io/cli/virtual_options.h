@@ -17,7 +17,7 @@ typedef struct virtual_arguments {
     double speed;   /* 0: instant */
     bool once;
     double idle, replug; /* s; 0 and -1: not given */
-    const char *executed, *log, *check, *host_commands, *script, *usb_trace;
+    const char *executed, *log, *check, *host_commands, *script, *steps, *usb_trace;
     bool json, quiet;
     fio_machine_options machine;
     int64_t seed;

@@ -88,6 +88,8 @@ VIRTUAL_OPTION("--case-insensitive", FLAG, machine.case_insensitive, 0, 0, NULL,
 
 VIRTUAL_GROUP("Faults (not with --run); P: a probability for each line, answer or byte, 0 to 1")
 VIRTUAL_OPTION("--script", TEXT, script, 0, 0, "FILE", "what goes wrong when, see the manual")
+VIRTUAL_OPTION("--do", TEXT, steps, 0, 0, "STEPS",
+               "the same in place, as 'at line 100 unplug; at line 300 lose ok 2'")
 VIRTUAL_OPTION("--seed", COUNT, seed, 0, INT64_MAX, "N", "of the faults' chance (0)")
 VIRTUAL_OPTION("--flip-in", NUMBER, machine.faults.flip_in, 0, 1, "P",
                "one bit of a line on its way to the printer")

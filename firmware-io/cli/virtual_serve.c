@@ -33,7 +33,7 @@ static void on_executed(void *context, const fio_executed *executed) {
         return;
     int64_t epoch = fio_machine_count(s->machine)->resets;
     if (s->standin)
-        epoch += s->standin->sessions + s->standin->unplugged;
+        epoch += s->standin->sessions + s->standin->plugs;
     if (epoch != s->epoch)
         virtual_check_interrupted(s->check);
     s->epoch = epoch;
@@ -51,22 +51,27 @@ static void on_control(void *context, const uint8_t setup[8], const uint8_t *dat
     fputc('\n', trace);
 }
 
+/* The file of --script, then the steps of --do. */
 static fio_status read_script(serving *s) {
-    const char *path = s->given->script;
-    FILE *file = path ? fopen(path, "re") : NULL;
-    if (!path)
+    const char *path = s->given->script, *steps = s->given->steps ? s->given->steps : "";
+    size_t size = 0, more = strlen(steps);
+    if (!path && !more)
         return FIO_OK;
-    if (!file)
+    FILE *file = path ? fopen(path, "re") : NULL;
+    if (path && !file)
         return fio_fail(FIO_UNREADABLE, "%s: can't be opened: %s", path, strerror(errno));
-    size_t size = 0;
-    s->script = malloc(SCRIPT_MOST);
-    if (s->script)
+    s->script = malloc(SCRIPT_MOST + more + 2);
+    if (s->script && file)
         size = fread(s->script, 1, SCRIPT_MOST, file);
-    bool failed = ferror(file);
-    fclose(file);
-    if (!s->script || failed || size == SCRIPT_MOST)
-        return fio_fail(FIO_UNREADABLE, "%s: can't be read, or is too long", path);
-    s->script[size] = 0;
+    bool failed = file && ferror(file);
+    if (file)
+        fclose(file);
+    if (!s->script)
+        return fio_fail(FIO_NO_MEMORY, "no memory for a script");
+    if (failed || size == SCRIPT_MOST || memchr(s->script, 0, size))
+        return fio_fail(FIO_UNREADABLE, "%s: can't be read, is no text, or is too long", path);
+    s->script[size] = '\n';
+    memcpy(s->script + size + 1, steps, more + 1);
     return FIO_OK;
 }
 

@@ -81,6 +81,7 @@ static fio_status follow_plug(fio_standin *standin, const fio_standin_end *end, 
         return FIO_OK;
     standin->unplugged = !in;
     standin->unplugged_at = time;
+    standin->plugs++;
     return standin->type->plug(standin, in);
 }
 
@@ -101,7 +102,9 @@ static bool over(fio_standin *standin, const fio_standin_end *end, double time) 
 static double rest(const fio_standin *standin, const fio_standin_end *end, double time) {
     if (standin->heard || standin->told)
         return 0;
-    double seconds = longest_wait, next = standin->type->next(standin);
+    double seconds = longest_wait;
+    double next =
+        standin->unplugged ? fio_machine_next(standin->machine) : standin->type->next(standin);
     if (next < INFINITY)
         seconds = fmin(seconds, fio_pace_until(standin->pace, next));
     if (standin->unplugged && end->replug_seconds >= 0)

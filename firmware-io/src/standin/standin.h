@@ -43,6 +43,7 @@ struct fio_standin {
     bool connected;       /* a host is there */
     bool heard, told;     /* set by serve(): bytes came from the host, went to it */
     int64_t sessions;     /* hosts that came */
+    int64_t plugs;        /* times the plug was pulled or put back */
     char where[256];      /* what a host has to open */
 
     /* The loop's own. */
