@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <grp.h>
+#include <linux/serial.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -21,6 +22,7 @@ typedef struct tty {
     fio_descriptor base; /* comes first */
     struct termios2 before;
     bool keep_lines;
+    bool hurried; /* it was slow to hand bytes over before */
 } tty;
 
 static fio_status tty_set_rate(fio_transport *transport, int64_t rate) {
@@ -78,12 +80,27 @@ static fio_status tty_discard(fio_transport *transport, size_t *kept) {
     return FIO_OK;
 }
 
+/* Linux lets an FTDI keep answers for 16 ms, unless it is told to hurry; *was: so far. False where
+ * there is no such setting. */
+static bool set_hurry(int file, bool hurry, bool *was) {
+    struct serial_struct serial;
+    if (ioctl(file, TIOCGSERIAL, &serial) < 0)
+        return false;
+    *was = (serial.flags & ASYNC_LOW_LATENCY) != 0;
+    serial.flags =
+        hurry ? serial.flags | ASYNC_LOW_LATENCY : serial.flags & ~(int)ASYNC_LOW_LATENCY;
+    return *was == hurry || ioctl(file, TIOCSSERIAL, &serial) == 0;
+}
+
 static void tty_close(fio_transport *transport) {
     tty *self = (tty *)transport;
     /* close() would wait half a minute for a device that takes nothing. */
     fio_descriptor_drain(&self->base, 0.5);
     if (fio_descriptor_pending(transport) > 0)
         ioctl(self->base.file, TCFLSH, TCOFLUSH);
+    bool was;
+    if (self->hurried)
+        set_hurry(self->base.file, false, &was);
     if (self->keep_lines)
         self->before.c_cflag &= ~(tcflag_t)HUPCL;
     ioctl(self->base.file, TCSETS2, &self->before);
@@ -198,6 +215,8 @@ fio_status fio_tty_open(fio_transport **transport, const char *path, int64_t rat
     self->base = (fio_descriptor){.transport.type = &tty_type, .file = file, .counted = true};
     self->keep_lines = keep_lines;
     snprintf(self->base.name, sizeof self->base.name, "tty:%s", path);
+    bool was;
+    self->hurried = set_hurry(file, true, &was) && !was;
     fio_status status = set_raw(self);
     if (status == FIO_OK)
         status = tty_set_rate(&self->base.transport, rate);

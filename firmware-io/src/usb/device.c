@@ -86,8 +86,7 @@ static void find_driver(fio_usb_found *found, const char *interface) {
  * number behind the place. */
 static void look_at_kernel(fio_usb_found *found) {
     char interface[64];
-    int configuration = read_number(found->place, "bConfigurationValue");
-    snprintf(interface, sizeof interface, "%s:%d.%d", found->place, configuration,
+    snprintf(interface, sizeof interface, "%s:%d.%d", found->place, found->configuration,
              found->link.interfaces[0]);
     find_driver(found, interface);
     find_tty(found, interface);
@@ -111,6 +110,7 @@ static bool look_at(fio_usb_found *found, const char *place) {
     found->product = device.product;
     read_text(place, "serial", found->serial, sizeof found->serial);
     read_text(place, "product", found->label, sizeof found->label);
+    found->configuration = read_number(place, "bConfigurationValue");
     found->known = fio_serial_match(&found->link, &device);
     if (found->known)
         look_at_kernel(found);
@@ -136,5 +136,5 @@ int fio_usb_list(fio_usb_found *found) {
 }
 
 bool fio_usb_allowed(const fio_usb_found *found) {
-    return access(found->node, R_OK | W_OK) == 0;
+    return found->configuration > 0 && access(found->node, R_OK | W_OK) == 0;
 }

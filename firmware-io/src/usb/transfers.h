@@ -13,13 +13,14 @@
 #include "usb/events.h"
 
 enum {
-    FIO_USB_IN_COUNT = 4, /* one being filled, one just filled, two for when we are late */
+    FIO_USB_IN_COUNT =
+        16, /* of 32 bytes with a CH340: 20 ms of 250000 bits/s that we may be late */
     FIO_USB_IN_MOST = 1024,
     FIO_USB_OUT_COUNT = 2,
     FIO_USB_OUT_MOST = 256, /* bytes each: what is in front of an emergency stop */
     FIO_USB_RING = 16384,
-    FIO_USB_ERRORS_MOST = 40, /* in a row: some ten tries of all IN transfers */
-    FIO_USB_STALLS_MOST = 1   /* in a row */
+    FIO_USB_ERRORS_MOST = 160, /* in a row: some ten tries of all IN transfers */
+    FIO_USB_STALLS_MOST = 1    /* in a row */
 };
 
 typedef struct fio_usb_transfers fio_usb_transfers;

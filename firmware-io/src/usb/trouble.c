@@ -23,7 +23,10 @@ void fio_usb_explain_access(char *text, size_t capacity, const fio_usb_found *fo
     const struct group *group = NULL;
     if (stat(found->node, &node) == 0 && node.st_gid != 0 && node.st_mode & S_IWGRP)
         group = getgrgid(node.st_gid);
-    if (group)
+    if (found->configuration == 0)
+        snprintf(text, capacity, "%s is not set up yet; if it stays so, its hub lacks the power",
+                 found->node);
+    else if (group)
         snprintf(text, capacity,
                  "not allowed to open %s: run \"sudo adduser $USER %s\", log out and in again",
                  found->node, group->gr_name);
