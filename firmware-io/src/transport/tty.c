@@ -87,8 +87,8 @@ static bool set_hurry(int file, bool hurry, bool *was) {
     if (ioctl(file, TIOCGSERIAL, &serial) < 0)
         return false;
     *was = (serial.flags & ASYNC_LOW_LATENCY) != 0;
-    serial.flags =
-        hurry ? serial.flags | ASYNC_LOW_LATENCY : serial.flags & ~(int)ASYNC_LOW_LATENCY;
+    int others = serial.flags & ~(int)ASYNC_LOW_LATENCY;
+    serial.flags = hurry ? others | (int)ASYNC_LOW_LATENCY : others;
     return *was == hurry || ioctl(file, TIOCSSERIAL, &serial) == 0;
 }
 

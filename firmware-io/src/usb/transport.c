@@ -195,7 +195,7 @@ static int open_device(usb_port *self, const fio_usb_found *found) {
 
 static fio_status claim(usb_port *self, const fio_usb_found *found) {
     char holder[160], why[400];
-    int error = open_device(self, found);
+    int error = found->configuration == 0 ? LIBUSB_ERROR_ACCESS : open_device(self, found);
     if (error)
         return refuse(self, found, error);
     /* Taking the device away from a program that prints through the kernel's tty would end that
