@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "stream/state.h"
 
-#define STOP_REPEAT 0.5 /* s between two emergency stops that nothing answered */
-enum { STOPS_MOST = 12 };
+#define STOP_REPEAT 0.5 /* s after the first emergency stop, then twice as long each time */
+#define STOP_REPEAT_MOST 8.0
 #define END_MOST 1800.0 /* s: heating to the end without an emergency parser */
 
 static void done(fio_streamer *streamer, bool heaters_off) {
@@ -69,6 +69,7 @@ static void queue_lift(fio_streamer *streamer) {
     bool known = streamer->track.homed && streamer->options.lift > 0;
     if (streamer->end_status != FIO_CANCELLED || !known || streamer->state == FIO_STREAM_PAUSED)
         return;
+    streamer->track.raised = streamer->options.lift;
     fio_text_string(&text, "G1 Z");
     fio_text_number(&text, streamer->options.lift, 3);
     fio_text_string(&text, " F600");
@@ -201,8 +202,12 @@ void fio_streamer_emergency(fio_streamer *streamer, double now) {
     streamer->out_length = streamer->out_done = 0;
     streamer->out_number = -1;
     streamer->raw_length = 0;
-    streamer->emergency_time = now;
-    streamer->emergencies++;
+    streamer->emergency_time =
+        now + fmin(STOP_REPEAT * (double)(1 << streamer->emergencies), STOP_REPEAT_MOST);
+    if (streamer->emergencies++ == 0)
+        streamer->end_started = now;
+    if (streamer->emergencies > 8)
+        streamer->emergencies = 8;
     const char *stop = streamer->firmware.stop ? streamer->firmware.stop : "\nM112\n";
     fio_queue_raw(streamer, stop, strlen(stop));
 }
@@ -239,14 +244,14 @@ static double end_at(const fio_streamer *streamer) {
 void fio_end_tick(fio_streamer *streamer) {
     if (streamer->state == FIO_STREAM_DONE)
         return;
-    if (streamer->emergency && streamer->now >= streamer->emergency_time + STOP_REPEAT) {
-        if (streamer->emergencies < STOPS_MOST) {
-            fio_streamer_emergency(streamer, streamer->now);
-            return;
-        }
+    if (streamer->emergency && streamer->now >= end_at(streamer)) {
         snprintf(streamer->message, sizeof streamer->message,
                  "emergency stop: the printer did not confirm it; switch it off");
         done(streamer, false);
+        return;
+    }
+    if (streamer->emergency && streamer->now >= streamer->emergency_time) {
+        fio_streamer_emergency(streamer, streamer->now);
         return;
     }
     if (streamer->ending && streamer->now >= end_at(streamer)) {
@@ -259,7 +264,7 @@ void fio_end_tick(fio_streamer *streamer) {
 
 double fio_end_deadline(const fio_streamer *streamer) {
     if (streamer->emergency)
-        return streamer->emergency_time + STOP_REPEAT;
+        return fmin(streamer->emergency_time, end_at(streamer));
     return streamer->ending ? end_at(streamer) : INFINITY;
 }
 

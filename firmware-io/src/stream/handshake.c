@@ -5,8 +5,9 @@
 #include "base/text.h"
 #include "stream/state.h"
 
-#define BOOT_SECONDS 1.5 /* for a "start" to come, of a board that was reset by opening its port   \
-                          */
+#define BOOT_SECONDS                                                                               \
+    1.5 /* for a "start" to come, of a board that was reset by opening its port                    \
+         */
 #define STARTED_SECONDS 0.3 /* of more text behind "start" */
 #define ANSWER_SECONDS 1.0
 #define GREETING_SECONDS 20.0
@@ -81,52 +82,6 @@ static void start_numbering(fio_streamer *streamer) {
     fio_handshake_number(streamer);
 }
 
-/* The commands before `index` are printed; `from` is where what is known of them begins. */
-static void skip_to(fio_streamer *streamer, int64_t index, bool anew) {
-    const fio_stream_resume *from = &streamer->from;
-    int64_t start = anew ? index : from->accepted;
-    streamer->skip = index;
-    streamer->skip_start = start;
-    streamer->skipped_anew = anew;
-    streamer->skipped = false;
-    streamer->has_pending = streamer->source_ended = false;
-    if (!streamer->source.seek && streamer->job_sent > start) {
-        fio_end_now(streamer, FIO_LINK_LOST,
-                    "the printer was reset, and the job can't be read again from where to go on");
-        return;
-    }
-    streamer->track = anew ? from->track_made : from->track;
-    streamer->track_made = from->track_made;
-    streamer->job_made = from->made;
-    streamer->undrained = !anew;
-    go_to(streamer, FIO_GREETING_SKIP, 0);
-    if (streamer->source.seek) {
-        fio_status status = streamer->source.seek(streamer->source.context, start);
-        if (status != FIO_OK)
-            fio_end_now(streamer, status, "%s", fio_error_message());
-    }
-}
-
-static void go_on_anew(fio_streamer *streamer) {
-    streamer->started_anew = true;
-    if (!streamer->has_resume) {
-        start_numbering(streamer);
-        return;
-    }
-    skip_to(streamer, streamer->from.made, true);
-}
-
-static void go_on_after(fio_streamer *streamer, int64_t last) {
-    int64_t index = fio_history_index(&streamer->from, last);
-    if (index < 0) {
-        go_on_anew(streamer);
-        return;
-    }
-    fio_history_restart(streamer, last);
-    streamer->greeting_until += 120; /* what the printer still has to do comes first */
-    skip_to(streamer, index, false);
-}
-
 /* Read on to where the job goes on; it may be a pipe that has nothing yet. */
 static void read_on(fio_streamer *streamer) {
     fio_source_command *command = &streamer->pending;
@@ -167,6 +122,55 @@ static void read_on(fio_streamer *streamer) {
         streamer->renumbered = false;
         ask_name(streamer);
     }
+}
+
+/* The commands before `index` are printed; `from` is where what is known of them begins. */
+static void skip_to(fio_streamer *streamer, int64_t index, bool anew) {
+    const fio_stream_resume *from = &streamer->from;
+    int64_t start = anew ? index : from->accepted;
+    streamer->skip = index;
+    streamer->skip_start = start;
+    streamer->skipped_anew = anew;
+    streamer->skipped = false;
+    streamer->has_pending = streamer->source_ended = false;
+    if (!streamer->source.seek && streamer->job_sent > start) {
+        fio_end_now(streamer, FIO_LINK_LOST,
+                    "the printer was reset, and the job can't be read again from where to go on");
+        return;
+    }
+    streamer->track = anew ? from->track_made : from->track;
+    streamer->track_made = from->track_made;
+    streamer->job_made = from->made;
+    streamer->undrained = !anew;
+    go_to(streamer, FIO_GREETING_SKIP, 0);
+    if (streamer->source.seek) {
+        fio_status status = streamer->source.seek(streamer->source.context, start);
+        if (status != FIO_OK) {
+            fio_end_now(streamer, status, "%s", fio_error_message());
+            return;
+        }
+    }
+    read_on(streamer);
+}
+
+static void go_on_anew(fio_streamer *streamer) {
+    streamer->started_anew = true;
+    if (!streamer->has_resume) {
+        start_numbering(streamer);
+        return;
+    }
+    skip_to(streamer, streamer->from.made, true);
+}
+
+static void go_on_after(fio_streamer *streamer, int64_t last) {
+    int64_t index = fio_history_index(&streamer->from, last);
+    if (index < 0) {
+        go_on_anew(streamer);
+        return;
+    }
+    fio_history_restart(streamer, last);
+    streamer->greeting_until += 120; /* what the printer still has to do comes first */
+    skip_to(streamer, index, false);
 }
 
 static void set_up(fio_streamer *streamer) {
@@ -249,6 +253,8 @@ static void repeat_last(fio_streamer *streamer) {
         return;
     }
     go_to(streamer, FIO_GREETING_LAST, ANSWER_SECONDS);
+    if (streamer->raw_length > 0)
+        return; /* the link does not even take what was to be said before */
     fio_queue_raw(streamer, "\n", 1);
     fio_recovery_provoke(streamer);
 }
@@ -263,7 +269,9 @@ static void leave_boot(fio_streamer *streamer) {
 }
 
 static void number_again(fio_streamer *streamer) {
-    if (streamer->attempts < ATTEMPTS_MOST || streamer->state == FIO_STREAM_GREETING)
+    if (streamer->raw_length > 0)
+        streamer->step_until = streamer->now + ANSWER_SECONDS;
+    else if (streamer->attempts < ATTEMPTS_MOST || streamer->state == FIO_STREAM_GREETING)
         fio_handshake_number(streamer);
     else
         streamer->step_until = INFINITY; /* the end has its own time */
@@ -281,7 +289,7 @@ static void give_up(fio_streamer *streamer) {
 
 void fio_handshake_tick(fio_streamer *streamer) {
     bool due = streamer->now >= streamer->step_until;
-    if (streamer->handshaking && due && streamer->raw_length == 0)
+    if (streamer->handshaking && due)
         number_again(streamer);
     if (streamer->state != FIO_STREAM_GREETING)
         return;
@@ -295,7 +303,7 @@ void fio_handshake_tick(fio_streamer *streamer) {
             leave_boot(streamer);
         break;
     case FIO_GREETING_LAST:
-        if (due && streamer->raw_length == 0)
+        if (due)
             repeat_last(streamer);
         break;
     case FIO_GREETING_BANNER:

@@ -119,6 +119,12 @@ static void put_track(fio_text *text, const fio_track *track) {
     flags |= (unsigned)track->homed << 4 | (unsigned)track->inches << 5 |
              (unsigned)track->relative << 6 | (unsigned)track->relative_extrusion << 7 |
              (unsigned)track->retracted << 8;
+    for (int i = 0; i < 3; i++) {
+        flags |= (unsigned)track->homed_axes[i] << (9 + i);
+        put_double(text, track->offset[i]);
+        put_double(text, track->acceleration[i]);
+    }
+    put_double(text, track->raised);
     put_hex(text, flags);
     put_double(text, track->feedrate);
     put_double(text, track->fan);
@@ -133,7 +139,14 @@ static void put_track(fio_text *text, const fio_track *track) {
 static void get_track(fio_fields *fields, fio_track *track) {
     for (int i = 0; i < 4; i++)
         track->position[i] = get_double(fields);
+    for (int i = 0; i < 3; i++) {
+        track->offset[i] = get_double(fields);
+        track->acceleration[i] = get_double(fields);
+    }
+    track->raised = get_double(fields);
     uint64_t flags = get_hex(fields);
+    for (int i = 0; i < 3; i++)
+        track->homed_axes[i] = flags >> (9 + i) & 1;
     for (int i = 0; i < 4; i++)
         track->known[i] = flags >> i & 1;
     track->homed = flags >> 4 & 1;

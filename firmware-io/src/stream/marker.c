@@ -58,10 +58,10 @@ double fio_marker_deadline(const fio_streamer *streamer) {
     if (streamer->probe)
         return streamer->now;
     bool outstanding = streamer->marker > streamer->executed;
-    if (outstanding && !streamer->marker_told)
+    if (outstanding && streamer->answered < streamer->marker)
         return INFINITY;
     if (outstanding)
-        return streamer->marker_answered + RETRY_SECONDS;
+        return fmax(streamer->pulse.answered, streamer->marker_time) + RETRY_SECONDS;
     if (streamer->marker_lines >= FIO_MARKER_LINES)
         return streamer->now;
     return streamer->marker_lines > 0 ? streamer->marker_time + FIO_MARKER_SECONDS : INFINITY;

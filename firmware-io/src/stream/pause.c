@@ -43,8 +43,10 @@ void fio_streamer_pause(fio_streamer *streamer, double now) {
             queue_move(streamer, "G1 E-", streamer->options.retract, " F1800");
             streamer->retracted = true;
         }
-        if (streamer->options.lift > 0)
+        if (streamer->options.lift > 0) {
+            streamer->track.raised = streamer->paused.raised = streamer->options.lift;
             queue_move(streamer, "G1 Z", streamer->options.lift, " F600");
+        }
         fio_queue_text(streamer, "G90");
     }
     fio_queue_text(streamer, streamer->options.on_pause);
@@ -61,6 +63,7 @@ void fio_streamer_resume(fio_streamer *streamer, double now) {
         return;
     }
     fio_streamer_enter(streamer, FIO_STREAM_RESUMING);
+    streamer->track.raised = 0;
     fio_track_restore(&streamer->paused, false, streamer->options.lift,
                       streamer->retracted ? streamer->options.retract : 0, text);
     fio_queue_text(streamer, text);

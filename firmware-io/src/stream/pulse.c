@@ -3,8 +3,9 @@
 
 #include "stream/state.h"
 
-#define BEATS_MISSED 3.0     /* heartbeats that may be lost or late */
-#define BEAT_SLACK 1.5       /* s */
+#define BEATS_MISSED 3.0 /* heartbeats that may be lost or late */
+#define BEAT_SLACK 1.5   /* s */
+enum { POLL_BYTES = 24 };
 #define NO_BUSY_SECONDS 60.0 /* reports come, but nothing is executed and nothing is busy */
 
 void fio_pulse_hear(fio_streamer *streamer, const fio_answer *answer) {
@@ -108,8 +109,8 @@ static double poll_at(const fio_streamer *streamer) {
     if (!may || streamer->opened_file || streamer->firmware.kind == FIO_FIRMWARE_GRBL ||
         !fio_queue_is_empty(streamer) || streamer->run_count >= FIO_STREAM_RUNS / 2)
         return INFINITY;
-    if (fio_window_lines(streamer) > 0 && streamer->now - pulse->answered > 1)
-        return INFINITY; /* it is at something long: it would answer all of them at its end */
+    if (!fio_window_open(streamer, POLL_BYTES))
+        return INFINITY; /* while it is at something long: it would answer all of them at its end */
     double period = report_period(streamer);
     double due = fmax(pulse->poll, pulse->reported) + (pulse->reports_seen ? 2 * period : period);
     return due;

@@ -23,10 +23,13 @@ static double wire_seconds(const fio_streamer *streamer, int64_t bytes) {
     return streamer->options.rate > 0 ? (double)bytes * 10 / (double)streamer->options.rate : 0;
 }
 
+/* While long moves go through a full planner oks come as slowly as those are made. */
 void fio_recovery_progress(fio_streamer *streamer) {
-    streamer->recovery.progress = streamer->now;
-    streamer->recovery.stall = FIO_STALL_SECONDS;
-    streamer->recovery.stalls = 0;
+    fio_recovery *recovery = &streamer->recovery;
+    double pace = 2 * streamer->pulse.pace;
+    recovery->progress = streamer->now;
+    recovery->stall = fmin(fmax(pace, FIO_STALL_SECONDS), FIO_STALL_PACED);
+    recovery->stalls = 0;
 }
 
 bool fio_recovery_holds(const fio_streamer *streamer) {
@@ -148,7 +151,10 @@ static void stalled(fio_streamer *streamer) {
     fio_recovery *recovery = &streamer->recovery;
     recovery->stalls++;
     recovery->progress = streamer->now;
+    bool is_long = fio_pulse_patience(streamer) > FIO_PLAIN_SECONDS;
     recovery->stall = fmin(2 * recovery->stall, FIO_STALL_MOST);
+    if (is_long)
+        recovery->stall = fmax(recovery->stall, FIO_STALL_LONG);
     streamer->report.lost_answers++;
     if (streamer->plain) {
         fio_queue_raw(streamer, streamer->firmware.kind == FIO_FIRMWARE_GRBL ? "?" : "M105\n",

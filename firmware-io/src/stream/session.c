@@ -3,6 +3,9 @@
 #include <math.h>
 #include <poll.h>
 
+/* A deadline that rounding leaves a hair away from now must be passed, not approached. */
+#define LEAST_SECONDS 1e-6
+
 enum { READS_MOST = 64 }; /* of a chatterbox, before anything is written */
 
 static fio_status take_in(fio_transport *transport, fio_streamer *streamer) {
@@ -54,7 +57,7 @@ static fio_status wait(fio_transport *transport, fio_streamer *streamer,
     double seconds = fio_streamer_deadline(streamer) - fio_transport_now(transport);
     if (hooks && hooks->period > 0)
         seconds = fmin(seconds, hooks->period);
-    seconds = fmax(fmin(seconds, 3600), 0);
+    seconds = fmax(fmin(seconds, 3600), LEAST_SECONDS);
     fio_status status = fio_transport_wait(transport, writing, polls, count, seconds);
     if (hooks && hooks->woken)
         hooks->woken(hooks->context, fio_transport_now(transport), polls, count);

@@ -21,10 +21,13 @@ enum {
     FIO_PROBLEM_MOST = 512 /* bytes of a message */
 };
 
-#define FIO_MARKER_SECONDS 1.0   /* between two markers while lines are sent */
-#define FIO_STALL_SECONDS 0.6    /* an ok is overdue */
-#define FIO_STALL_MOST 8.0       /* the same, after having asked in vain */
-#define FIO_PLAIN_SECONDS 60.0   /* silence during usual commands, of a firmware with no heartbeat \
+#define FIO_MARKER_SECONDS 1.0 /* between two markers while lines are sent */
+#define FIO_STALL_SECONDS 0.6  /* an ok is overdue */
+#define FIO_STALL_PACED 2.5    /* … at most, where oks come slowly anyway */
+#define FIO_STALL_MOST 8.0     /* the same, after having asked in vain */
+#define FIO_STALL_LONG 5.0     /* … where what is under way may take long */
+#define FIO_PLAIN_SECONDS                                                                          \
+    60.0                         /* silence during usual commands, of a firmware with no heartbeat \
                                   */
 #define FIO_LONG_SECONDS 1200.0  /* … and during heating, homing and the like */
 #define FIO_USER_SECONDS 14400.0 /* … and while a person is waited for */
@@ -81,6 +84,7 @@ typedef struct fio_recovery {
 typedef struct fio_pulse {
     double heard, answered, busy, reported; /* when: a byte, an ok, "busy", temperatures */
     bool busy_seen, reports_seen;
+    double pace; /* s between two oks: the longest of late */
     double poll; /* when temperatures were asked for last */
     double trip; /* s: the shortest of late from a line to its ok; 0: not known */
     double shortest;

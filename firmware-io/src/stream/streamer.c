@@ -159,6 +159,8 @@ static void hear_error(fio_streamer *streamer, const fio_answer *answer) {
 }
 
 static void hear_ok(fio_streamer *streamer, const fio_answer *answer) {
+    double since = streamer->now - streamer->pulse.answered;
+    streamer->pulse.pace = fmax(0.75 * streamer->pulse.pace, fmin(since, FIO_STALL_PACED));
     streamer->pulse.answered = streamer->now;
     streamer->rubbish = false;
     if (answer->planner_free >= 0)

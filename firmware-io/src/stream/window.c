@@ -3,6 +3,8 @@
 
 #include "stream/state.h"
 
+enum { STALLS_MANY = 4 }; /* then what is thought to be in the firmware's way was surely lost */
+
 static int64_t end_of(const fio_streamer *streamer, int64_t number) {
     const fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
     return line->number == number ? line->end : streamer->answered_end;
@@ -41,7 +43,7 @@ bool fio_window_open(const fio_streamer *streamer, size_t length) {
         most_lines = 1;
     if (streamer->recovery.allow_one) {
         bool fits = bytes_behind_oldest(streamer) + (int64_t)length <= most_bytes;
-        return most_bytes <= 0 || fits || streamer->recovery.stalls > 2;
+        return most_bytes <= 0 || fits || streamer->recovery.stalls > STALLS_MANY;
     }
     return lines < most_lines && fio_window_bytes(streamer) + (int64_t)length <= most_bytes;
 }
@@ -89,6 +91,7 @@ void fio_window_answer(fio_streamer *streamer, const fio_answer *answer) {
     if (!streamer->plain && answer->line >= 0) {
         measure_trip(streamer, fio_history_line(streamer, answer->line));
         take_numbered(streamer, answer->line);
+        fio_marker_answered(streamer, answer);
         return;
     }
     if (streamer->answered + 1 < streamer->cursor) {
