@@ -367,10 +367,9 @@ static bool has_free_text(const fio_line *line) {
 bool fio_printer_command(fio_virtual_printer *printer, fio_line *line) {
     if (!has_free_text(line))
         fio_line_words(line);
-    if (printer->firmware && printer->firmware(printer->firmware_context, line))
-        return true;
-    bool known = true;
-    switch (line->letter) {
+    int done = printer->firmware ? printer->firmware(printer->firmware_context, line) : 0;
+    bool known = done >= 0;
+    switch (done ? 0 : line->letter) {
     case 'G':
         known = execute_g(printer, line);
         break;
@@ -385,12 +384,16 @@ bool fio_printer_command(fio_virtual_printer *printer, fio_line *line) {
         select_tool(printer, line);
         break;
     default:
-        known = line->length == 0;
+        known = done > 0 || (!done && line->length == 0);
     }
-    if (!known) {
-        char bytes[FIO_LINE_MOST + 32];
+    if (!known && !printer->unknown) {
+        fio_printer_say(printer, "error:20");
+        printer->answered = true;
+    } else if (!known) {
+        char bytes[FIO_LINE_MOST + 64];
         fio_text text = fio_text_in(bytes, sizeof bytes);
-        fio_text_string(&text, "echo:Unknown command: \"");
+        fio_text_string(&text, printer->unknown);
+        fio_text_string(&text, "\"");
         fio_text_bytes(&text, line->text, (size_t)line->length);
         fio_text_string(&text, "\"");
         fio_printer_say(printer, bytes);

@@ -24,11 +24,12 @@ void fio_firmware_reset(fio_machine *machine) {
     machine->taint_at = INT32_MAX;
     machine->emergency = (fio_emergency_parser){0};
     machine->queued = 0;
-    machine->busy_seconds = machine->options.busy_seconds;
+    machine->busy_seconds = machine->dialect->busy ? machine->options.busy_seconds : 0;
     machine->temperature_seconds = machine->position_seconds = 0;
     machine->prompting = false;
     machine->processor = FIO_BOOTING;
-    machine->until = machine->now + machine->options.boot_seconds;
+    machine->until = machine->now + (machine->quick_reset ? 0 : machine->options.boot_seconds);
+    machine->quick_reset = false;
     fio_wire_discard(&machine->out, machine->now);
 }
 
@@ -36,7 +37,8 @@ void fio_firmware_emergency(fio_machine *machine, fio_emergency what) {
     fio_virtual_printer *printer = machine->printer;
     switch (what) {
     case FIO_EMERGENCY_KILL:
-        fio_firmware_say(machine, "echo:M112 Shutdown");
+        if (machine->dialect->capabilities)
+            fio_firmware_say(machine, "echo:M112 Shutdown");
         fio_firmware_kill(machine, NULL);
         break;
     case FIO_EMERGENCY_STOP:
@@ -65,8 +67,7 @@ void fio_firmware_kill(fio_machine *machine, const char *error) {
     fio_printer_halt(printer, error ? error : "emergency stop (M112)");
     if (error)
         fio_firmware_say(machine, error);
-    fio_firmware_say(machine, "Error:Printer halted. kill() called!");
-    fio_firmware_say(machine, "//action:poweroff");
+    fio_firmware_say_lines(machine, machine->dialect->killed);
     machine->processor = FIO_HALTED;
     machine->queued = 0;
     machine->card.printing = machine->card.saving = false;
@@ -79,10 +80,21 @@ bool fio_firmware_may_receive(const fio_machine *machine) {
            (unsigned)machine->options.receive_bytes - 1; /* a ring keeps one place empty */
 }
 
+static bool out_of_band(const fio_machine *machine) {
+    return machine->options.emergency_parser && machine->dialect->out_of_band;
+}
+
 void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted) {
+    if (machine->processor == FIO_HALTED && byte == '\n' && machine->dialect->dead)
+        fio_firmware_say(machine, machine->dialect->dead);
+    if (machine->processor == FIO_HALTED && byte == 0x18 && !machine->dialect->identity)
+        machine->plan.reset = machine->quick_reset = true;
     if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED)
         return;
-    if (machine->options.emergency_parser) {
+    if (machine->dialect->numbering == FIO_NUMBERS_IGNORED && !machine->dialect->out_of_band &&
+        fio_firmware_real_time(machine, byte))
+        return;
+    if (out_of_band(machine)) {
         fio_firmware_emergency(machine, fio_emergency_feed(&machine->emergency, (char)byte));
         if (machine->processor == FIO_HALTED)
             return;
@@ -96,28 +108,6 @@ void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted) {
     machine->lost_before = false;
     machine->received[machine->received_last++ & (FIO_RECEIVE_MOST - 1)] =
         (uint16_t)(byte | (tainted ? FIO_TAINT : 0));
-}
-
-void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict) {
-    fio_virtual_printer *printer = machine->printer;
-    char bytes[96];
-    fio_text text = fio_text_in(bytes, sizeof bytes);
-    fio_text_string(&text, "Error:");
-    fio_text_string(&text, fio_line_complaint(verdict));
-    fio_text_string(&text, ", Last Line: ");
-    fio_text_integer(&text, printer->last_number);
-    fio_firmware_say(machine, bytes);
-    if (machine->received_first != machine->received_last)
-        machine->lost_before = true;
-    machine->received_first = machine->received_last;
-    text = fio_text_in(bytes, sizeof bytes);
-    fio_text_string(&text, "Resend: ");
-    fio_text_integer(&text, printer->last_number + 1 + machine->plan.miscount);
-    fio_firmware_say(machine, bytes);
-    machine->counts.resends++;
-    machine->counts.oks++;
-    fio_firmware_reply(machine, "ok", 2);
-    printer->statistics.rejected_lines++;
 }
 
 /* Where the line is damaged first; bytes lost show at the one after them. */
@@ -141,7 +131,7 @@ static bool is_tainted(const fio_machine *machine) {
 
 /* Without an emergency parser these act when they are read, as long as they bear no number. */
 static void act_early(fio_machine *machine, const char *text) {
-    if (machine->options.emergency_parser)
+    if (out_of_band(machine))
         return;
     if (!strncmp(text, "M108", 4))
         fio_firmware_emergency(machine, FIO_EMERGENCY_BREAK);
@@ -157,7 +147,7 @@ static fio_queued *enqueue(fio_machine *machine, const fio_reader *reader) {
     memcpy(queued->text, reader->text, (size_t)reader->length + 1);
     queued->length = reader->length;
     queued->cut = reader->cut;
-    queued->tainted = queued->silent = false;
+    queued->tainted = queued->silent = queued->from_card = false;
     return queued;
 }
 
@@ -170,29 +160,29 @@ static void take_line(fio_machine *machine) {
         return;
     if (machine->plan.reject_lines > 0) {
         machine->plan.reject_lines--;
-        fio_firmware_reject(machine, FIO_LINE_CHECKSUM);
+        fio_firmware_reject(machine, FIO_LINE_CHECKSUM, reader->text);
         return;
     }
     int64_t before = printer->last_number;
-    fio_line_verdict verdict =
-        fio_line_check(reader->text, &printer->last_number, machine->options.case_insensitive);
-    if (verdict == FIO_LINE_REPEATED) {
-        printer->statistics.duplicate_lines++;
+    if (!fio_firmware_accepts(machine, reader->text))
         return;
-    }
-    if (verdict == FIO_LINE_GOOD && machine->card.saving && *reader->text != 'N' &&
-        strncmp(reader->text, "M29", 3))
-        verdict = FIO_LINE_UNCHECKED; /* what is written to a file shall be what was sent */
-    if (verdict != FIO_LINE_GOOD) {
-        fio_firmware_reject(machine, verdict);
-        return;
-    }
     if (printer->last_number != before)
         fio_script_happens(machine, FIO_AT_NUMBER, (double)printer->last_number);
     act_early(machine, reader->text);
     if (machine->processor == FIO_HALTED)
         return;
-    enqueue(machine, reader)->tainted = is_tainted(machine);
+    if (machine->dialect->early_ok)
+        fio_firmware_early_ok(machine, reader->text);
+    if (machine->plan.reset || machine->plan.halt)
+        return;
+    fio_queued *queued = enqueue(machine, reader);
+    queued->tainted = is_tainted(machine);
+    queued->silent = machine->dialect->early_ok;
+}
+
+static void enqueue_from_card(fio_machine *machine) {
+    fio_queued *queued = enqueue(machine, &machine->card_reader);
+    queued->silent = queued->from_card = true;
 }
 
 static void read_lines(fio_machine *machine) {
@@ -202,13 +192,15 @@ static void read_lines(fio_machine *machine) {
         bool whole = read_byte(machine, got);
         if (whole)
             take_line(machine);
-        if (machine->reader.done) { /* a false end of line taints the line after it, too */
+        if (!machine->dialect->identity && machine->reader.done && machine->reader.length == 0)
+            fio_firmware_ok(machine); /* grbl answers empty lines, too */
+        if (machine->reader.done) {   /* a false end of line taints the line after it, too */
             machine->line_tainted = got & FIO_TAINT;
             machine->taint_at = INT32_MAX;
         }
     }
     while (machine->queued < machine->options.command_slots && fio_firmware_card_line(machine))
-        enqueue(machine, &machine->card_reader)->silent = true;
+        enqueue_from_card(machine);
 }
 
 /* A wait for a person asks the host to ask. */
@@ -236,9 +228,12 @@ static void begin(fio_machine *machine) {
     bool known = printer->statistics.unknown_commands == unknown;
     if (queued->tainted && (known || machine->line.has_number))
         machine->counts.undetectable++;
-    if (printer->halted)
+    if (printer->halted) {
+        fio_printer_end_entry(printer);
         machine->processor = FIO_HALTED;
-    else if (printer->waiting) {
+        machine->queued = 0;
+        machine->card.printing = machine->card.saving = false;
+    } else if (printer->waiting) {
         machine->processor = FIO_WAITING;
         prompt(machine);
     } else
@@ -261,9 +256,9 @@ static void finish(fio_machine *machine) {
 }
 
 static void boot(fio_machine *machine) {
-    fio_firmware_say(machine, "start");
-    fio_firmware_say(machine, "Marlin 2.1 (isoprint virtual printer)");
+    fio_firmware_say_lines(machine, machine->dialect->banner);
     machine->processor = FIO_IDLE;
+    machine->idle_at = machine->now + machine->dialect->wait_seconds;
 }
 
 static unsigned backlog(const fio_machine *machine, unsigned *most) {
@@ -305,10 +300,12 @@ static bool turn(fio_machine *machine) {
                       machine->queue[machine->oldest].length, machine->options.case_insensitive);
         machine->busy_at = machine->now + machine->busy_seconds;
         machine->processor = FIO_BLOCKED;
-        if (machine->card.saving && !machine->queue[machine->oldest].silent) {
+        if (machine->card.saving && !machine->queue[machine->oldest].from_card) {
             fio_firmware_save_line(machine, &machine->line);
             answer(machine, false);
-        }
+        } else if (!machine->dialect->identity &&
+                   fio_firmware_dollar(machine, machine->queue[machine->oldest].text))
+            answer(machine, true);
         return true;
     case FIO_BLOCKED:
         read_lines(machine);
@@ -352,8 +349,25 @@ static void say_busy(fio_machine *machine) {
     if (!works_long(machine) || machine->busy_seconds == 0 || machine->now < machine->busy_at)
         return;
     bool user = machine->processor == FIO_WAITING && machine->printer->wait_user;
-    fio_firmware_say(machine, user ? "echo:busy: paused for user" : "echo:busy: processing");
+    char bytes[64];
+    fio_text text = fio_text_in(bytes, sizeof bytes);
+    fio_text_string(&text, machine->dialect->busy);
+    fio_text_string(&text, user ? "paused for user" : "processing");
+    fio_firmware_say(machine, bytes);
     machine->busy_at = machine->now + machine->busy_seconds;
+}
+
+/* Repetier's way of asking for lines. */
+static void say_wait(fio_machine *machine) {
+    double seconds = machine->dialect->wait_seconds;
+    if (seconds == 0)
+        return;
+    if (machine->processor != FIO_IDLE || machine->queued > 0)
+        machine->idle_at = machine->now + seconds;
+    else if (machine->now >= machine->idle_at) {
+        fio_firmware_say(machine, "wait");
+        machine->idle_at = machine->now + seconds;
+    }
 }
 
 static void report_heating(fio_machine *machine) {
@@ -380,6 +394,7 @@ void fio_firmware_step(fio_machine *machine) {
     if (machine->processor == FIO_HALTED || machine->now < machine->plan.silent_until)
         return;
     say_busy(machine);
+    say_wait(machine);
     report_heating(machine);
     fio_firmware_reports(machine);
 }
@@ -419,6 +434,8 @@ static double next_work(const fio_machine *machine) {
         return next;
     if (works_long(machine) && machine->busy_seconds > 0)
         next = fmin(next, machine->busy_at);
+    if (machine->dialect->wait_seconds > 0 && machine->processor == FIO_IDLE)
+        next = fmin(next, machine->idle_at);
     return fmin(next, fio_firmware_next_report(machine));
 }
 

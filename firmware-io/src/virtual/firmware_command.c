@@ -4,14 +4,7 @@
 
 #include "virtual/machine.h"
 
-static void say_identity(fio_machine *machine) {
-    char bytes[200];
-    fio_text text = fio_text_in(bytes, sizeof bytes);
-    fio_text_string(&text, "FIRMWARE_NAME:Marlin 2.1 (isoprint virtual printer) "
-                           "PROTOCOL_VERSION:1.0 MACHINE_TYPE:Virtual EXTRUDER_COUNT:");
-    fio_text_integer(&text, machine->options.printer.tools);
-    fio_text_string(&text, " UUID:cede2a2f-41a2-4748-9b12-c55c62f367ff");
-    fio_firmware_say(machine, bytes);
+static void say_capabilities(fio_machine *machine) {
     static const char *const capabilities[] = {
         "SERIAL_XON_XOFF:0",
         "BINARY_FILE_TRANSFER:0",
@@ -37,7 +30,8 @@ static void say_identity(fio_machine *machine) {
         "MEATPACK:1",
     };
     for (size_t i = 0; i < sizeof capabilities / sizeof *capabilities; i++) {
-        text = fio_text_in(bytes, sizeof bytes);
+        char bytes[64];
+        fio_text text = fio_text_in(bytes, sizeof bytes);
         fio_text_string(&text, "Cap:");
         fio_text_string(&text, capabilities[i]);
         fio_firmware_say(machine, bytes);
@@ -46,15 +40,56 @@ static void say_identity(fio_machine *machine) {
                                                                 : "Cap:EMERGENCY_PARSER:0");
 }
 
+static void say_identity(fio_machine *machine) {
+    const char *identity = machine->dialect->identity;
+    char bytes[240];
+    fio_text text = fio_text_in(bytes, sizeof bytes);
+    fio_text_string(&text, machine->dialect->ok_last ? "ok " : "");
+    fio_text_string(&text, identity);
+    if (identity[strlen(identity) - 1] == ':') {
+        fio_text_integer(&text, machine->options.printer.tools);
+        fio_text_string(&text, " UUID:cede2a2f-41a2-4748-9b12-c55c62f367ff");
+    }
+    machine->counts.oks += machine->dialect->ok_last;
+    machine->printer->answered = machine->dialect->ok_last;
+    fio_firmware_say(machine, bytes);
+    if (machine->dialect->capabilities)
+        say_capabilities(machine);
+    if (machine->dialect->numbering == FIO_NUMBERS_STRICT && machine->dialect->busy) {
+        fio_firmware_say(machine, "Cap:AUTOREPORT_TEMP:1");
+        fio_firmware_say(machine, "Cap:AUTOREPORT_POSITION:1");
+    }
+}
+
+/* Klipper's order and digits. */
+static void say_short_temperatures(fio_machine *machine) {
+    const fio_virtual_printer *printer = machine->printer;
+    const fio_heater *heaters[2] = {&printer->bed, &printer->nozzle[printer->tool]};
+    char bytes[120];
+    fio_text text = fio_text_in(bytes, sizeof bytes);
+    fio_text_string(&text, "ok");
+    for (int i = 0; i < 2; i++) {
+        fio_text_string(&text, i ? " T0:" : " B:");
+        fio_text_number(&text, fio_heater_reading(heaters[i], printer->clock), 1);
+        fio_text_string(&text, " /");
+        fio_text_number(&text, heaters[i]->target, 1);
+    }
+    fio_firmware_say(machine, bytes);
+}
+
 /* M105: its ok stands in front of the temperatures, without N, P and B. */
 static void say_temperatures(fio_machine *machine) {
     char bytes[320];
     fio_text text = fio_text_in(bytes, sizeof bytes);
-    fio_text_string(&text, "ok");
-    fio_printer_temperatures(machine->printer, &text);
-    machine->counts.oks++;
-    fio_firmware_say(machine, bytes);
     machine->printer->answered = true;
+    machine->counts.oks += !machine->dialect->early_ok;
+    if (machine->dialect->ok_last) {
+        say_short_temperatures(machine);
+        return;
+    }
+    fio_text_string(&text, machine->dialect->early_ok ? "" : "ok");
+    fio_printer_temperatures(machine->printer, &text);
+    fio_firmware_say(machine, bytes + (machine->dialect->early_ok ? 1 : 0));
 }
 
 /* S of an automatic report: seconds, at most a minute. */
@@ -69,6 +104,8 @@ void fio_firmware_set_interval(const fio_machine *machine, const fio_line *line,
 static void keep_alive(fio_machine *machine, const fio_line *line) {
     char bytes[32];
     fio_text text = fio_text_in(bytes, sizeof bytes);
+    if (!machine->dialect->busy)
+        return;
     if (fio_line_has(line, 'S')) {
         machine->busy_seconds = floor(fmin(fmax(fio_line_value(line, 'S'), 0), 60));
         machine->busy_at = machine->now + machine->busy_seconds;
@@ -79,31 +116,54 @@ static void keep_alive(fio_machine *machine, const fio_line *line) {
     fio_firmware_say(machine, bytes);
 }
 
-bool fio_firmware_command(void *context, const fio_line *line) {
+static void stop(fio_machine *machine) {
+    fio_printer_halt(machine->printer, "emergency stop (M112)");
+    if (machine->dialect->capabilities)
+        fio_firmware_say(machine, "echo:M112 Shutdown");
+    fio_firmware_say_lines(machine, machine->dialect->killed);
+}
+
+/* grbl has no heaters, no extruder and no card. */
+static int grbl_command(const fio_line *line) {
+    static const short known[] = {0, 1, 2, 3, 4, 5, 7, 8, 9, 30};
+    if (line->letter == 'G')
+        return 0;
+    for (size_t i = 0; line->letter == 'M' && i < sizeof known / sizeof *known; i++)
+        if (line->code == known[i])
+            return line->code < 2 ? 0 : 1;
+    return -1;
+}
+
+int fio_firmware_command(void *context, const fio_line *line) {
     fio_machine *machine = context;
+    if (!machine->dialect->identity)
+        return grbl_command(line);
     if (line->letter != 'M')
-        return false;
+        return 0;
     switch (line->code) {
     case 105:
         say_temperatures(machine);
-        return true;
+        return 1;
     case 108:
     case 410: /* what they do was done when they came */
     case 876:
-        return true;
+        return 1;
+    case 112:
+        stop(machine);
+        return 1;
     case 113:
         keep_alive(machine, line);
-        return true;
+        return 1;
     case 115:
         say_identity(machine);
-        return true;
+        return 1;
     case 154:
         fio_firmware_set_interval(machine, line, &machine->position_seconds, &machine->position_at);
-        return true;
+        return 1;
     case 155:
         fio_firmware_set_interval(machine, line, &machine->temperature_seconds,
                                   &machine->temperature_at);
-        return true;
+        return 1;
     default:
         return fio_firmware_setting(machine, line->code) || fio_firmware_card(machine, line);
     }

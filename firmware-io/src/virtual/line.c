@@ -81,6 +81,10 @@ fio_line_verdict fio_line_check(const char *text, int64_t *last, bool lower) {
     return FIO_LINE_GOOD;
 }
 
+int64_t fio_line_number(const char *text) {
+    return read_long(text + 1);
+}
+
 const char *fio_line_complaint(fio_line_verdict verdict) {
     return verdict == FIO_LINE_NUMBER     ? "Line Number is not Last Line Number+1"
            : verdict == FIO_LINE_CHECKSUM ? "checksum mismatch"

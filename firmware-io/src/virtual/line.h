@@ -39,6 +39,7 @@ int fio_line_strip(char text[FIO_LINE_MOST + 1], bool *cut, const char *bytes, s
  * bugfix-2.1 queue. *last, the number before, follows a good line. A `lower` n is a number, too, if
  * allowed. */
 fio_line_verdict fio_line_check(const char *text, int64_t *last, bool lower);
+int64_t fio_line_number(const char *text);                /* of a line that begins with N */
 const char *fio_line_complaint(fio_line_verdict verdict); /* "checksum mismatch" … */
 
 /* Take a stripped line apart: number and checksum are cut off. `lower`: n, g, m and t will do. */

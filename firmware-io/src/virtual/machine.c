@@ -39,6 +39,11 @@ static fio_status check_options(const fio_machine_options *options) {
     if (options->command_slots < 1 || options->command_slots > FIO_SLOTS_MOST)
         return fio_fail(FIO_USAGE, "%d commands in the queue: 1 to %d", options->command_slots,
                         FIO_SLOTS_MOST);
+    if (!fio_dialect_find(options->firmware))
+        return fio_fail(FIO_USAGE,
+                        "no firmware \"%s\": marlin, prusa, repetier, klipper, grbl, smoothie and "
+                        "reprapfirmware are known",
+                        options->firmware ? options->firmware : "");
     const double seconds[] = {options->line_seconds, options->busy_seconds, options->boot_seconds,
                               options->faults.late_seconds};
     for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++)
@@ -85,7 +90,10 @@ fio_status fio_machine_create(fio_machine **machine, const fio_machine_options *
     fio_printer_live(made->printer, 0);
     made->printer->firmware = fio_firmware_command;
     made->printer->firmware_context = made;
-    made->busy_seconds = options->busy_seconds;
+    made->dialect = fio_dialect_find(options->firmware);
+    made->busy_seconds = made->dialect->busy ? options->busy_seconds : 0;
+    made->printer->unknown = made->dialect->unknown;
+    made->idle_at = made->dialect->wait_seconds;
     made->processor = FIO_IDLE;
     made->damage_at = made->lose_at = -1;
     made->taint_at = INT32_MAX;

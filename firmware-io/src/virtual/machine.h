@@ -5,6 +5,7 @@
 #include <isoprint/machine.h>
 
 #include "virtual/card.h"
+#include "virtual/dialect.h"
 #include "virtual/printer.h"
 #include "virtual/random.h"
 #include "virtual/reader.h"
@@ -23,7 +24,8 @@ typedef struct fio_queued {
     int length;
     bool cut;
     bool tainted; /* what the host sent is not what arrived */
-    bool silent;  /* not from the host: no ok */
+    bool silent;  /* no ok: not from the host, or it was said already */
+    bool from_card;
 } fio_queued;
 
 typedef enum fio_processor {
@@ -67,6 +69,7 @@ typedef struct fio_watch {
 
 struct fio_machine {
     fio_machine_options options;
+    const fio_dialect *dialect;
     fio_virtual_printer *printer;
     fio_machine_counts counts;
     double now;
@@ -94,6 +97,8 @@ struct fio_machine {
     double temperature_seconds, temperature_at; /* M155; 0: off */
     double position_seconds, position_at;       /* M154 */
 
+    double idle_at; /* when it has had nothing to do for as long as "wait" takes */
+    bool quick_reset;
     double card_seconds, card_at; /* M27 S */
     fio_settings defaults, kept;
     bool stored; /* `kept` is valid */
@@ -124,7 +129,10 @@ void fio_firmware_reset(fio_machine *machine);
 void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted);
 bool fio_firmware_may_receive(const fio_machine *machine); /* there is room */
 void fio_firmware_kill(fio_machine *machine, const char *error);
-void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict);
+/* Ask for the line that is due, since this one was not it. */
+void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict, const char *text);
+/* By the dialect's rules; what is to be said of it is said. */
+bool fio_firmware_accepts(fio_machine *machine, const char *text);
 
 /* M108 and the like, or a person at the machine. */
 void fio_firmware_emergency(fio_machine *machine, fio_emergency what);
@@ -141,8 +149,9 @@ void fio_script_pass(fio_machine *machine);         /* do it, and what could not
 void fio_thermal_check(fio_machine *machine);
 double fio_thermal_next(const fio_machine *machine);
 
-/* firmware_command.c: what the firmware answers without the printer; false: not its own. */
-bool fio_firmware_command(void *machine, const fio_line *line);
+/* firmware_command.c: what the firmware answers without the printer: 1 it did, -1 it knows that
+ * there is no such command, 0 it is the printer's. */
+int fio_firmware_command(void *machine, const fio_line *line);
 void fio_firmware_reports(fio_machine *machine); /* what is due of itself */
 double fio_firmware_next_report(const fio_machine *machine);
 
@@ -155,6 +164,10 @@ void fio_firmware_say_progress(fio_machine *machine);
 void fio_firmware_save_line(fio_machine *machine, const fio_line *line);
 bool fio_firmware_card_line(fio_machine *machine); /* the next one is in card_reader */
 
+/* firmware_grbl.c: true: it was one of these. */
+bool fio_firmware_real_time(fio_machine *machine, uint8_t byte);
+bool fio_firmware_dollar(fio_machine *machine, const char *text);
+
 /* firmware_setting.c */
 bool fio_firmware_setting(fio_machine *machine, int code);
 void fio_firmware_keep_defaults(fio_machine *machine);
@@ -164,6 +177,8 @@ void fio_firmware_load_settings(fio_machine *machine);
 void fio_firmware_say(fio_machine *machine, const char *text);
 void fio_firmware_reply(void *machine, const char *text, size_t length);
 void fio_firmware_ok(fio_machine *machine);
+void fio_firmware_early_ok(fio_machine *machine, const char *text);   /* of a line just read */
+void fio_firmware_say_lines(fio_machine *machine, const char *lines); /* parted by '\n'; NULL */
 
 /* fault.c: a byte comes to the end of the wire, an answer goes out. */
 void fio_fault_byte(fio_machine *machine, uint8_t byte);

@@ -122,6 +122,7 @@ void fio_printer_reset(fio_virtual_printer *printer) {
 
 static void set_up(fio_virtual_printer *printer, const fio_virtual_options *options) {
     printer->options = *options;
+    printer->unknown = "echo:Unknown command: ";
     printer->planner.capacity = options->planner_blocks;
     for (int i = 0; i < FIO_TOOLS_MOST; i++)
         printer->nozzle[i] = cold_heater(&options->nozzle, options->room_temperature);

@@ -69,8 +69,9 @@ struct fio_virtual_printer {
     fio_activity wait_activity;
     fio_heater *wait_heater;
     int64_t starved;
-    /* What a machine's firmware does itself; true: done. */
-    bool (*firmware)(void *context, const fio_line *line);
+    /* What a machine's firmware does itself: 1 it did, -1 nobody knows this, 0 the printer's. */
+    int (*firmware)(void *context, const fio_line *line);
+    const char *unknown; /* what is said before an unknown command; NULL: "error:20", no ok */
     void *firmware_context;
 
     fio_execution_log log;
