@@ -87,8 +87,9 @@ static void test_learn(void) {
                                         "Cap:MEATPACK:1",
                                         "Cap:SDCARD:0",
                                         "Cap:NEVER_HEARD_OF:1",
-                                        "ok N3 P15 B3",
-                                        "ok N4 P12 B0",
+                                        "ok N3 P15 B7", /* a 3 with one wrong bit */
+                                        "ok N4 P15 B3",
+                                        "ok N5 P12 B0",
                                         NULL};
     fio_firmware f = marlin_after(tells);
     CHECK(f.tools == 2 && f.emergency_parser && f.auto_temperatures && f.auto_position);

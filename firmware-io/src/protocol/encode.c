@@ -30,7 +30,7 @@
  *   is the right one: line 5 is executed, as it should be, up to its '*'.
  *
  * What remains: two ends of adjacent lines hit at once (three lines in one) pass in about one case
- * of 60, and so does a pair that is longer than the firmware's buffer and cut within the second
+ * of 40, and so does a pair that is longer than the firmware's buffer and cut within the second
  * checksum, in one of 256. Marlin ends the command at the first '*', so that it still executes line
  * 5 as it was sent, and then asks for line 6. A firmware that reads commands in lower case without
  * taking 'n' for 'N' executes a line whose 'N' lost that bit unnumbered, then asks for it again:

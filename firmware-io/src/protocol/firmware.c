@@ -203,8 +203,12 @@ static void learn_buffers(fio_firmware *firmware, const fio_answer *answer) {
         answer->planner_free > PLANNER_MOST || answer->commands_free > SLOTS_MOST)
         return;
     firmware->advanced_ok = true;
-    if (answer->commands_free > firmware->command_slots)
-        firmware->command_slots = answer->commands_free;
+    int told = answer->commands_free, both = told;
+    if (firmware->told_slots < both)
+        both = firmware->told_slots;
+    firmware->told_slots = told;
+    if (both > firmware->command_slots)
+        firmware->command_slots = both;
     if (answer->planner_free >= firmware->planner_blocks)
         firmware->planner_blocks = answer->planner_free + 1; /* one is always kept free */
     if (firmware->receive_bytes == 0)

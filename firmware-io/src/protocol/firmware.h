@@ -32,6 +32,7 @@ typedef struct fio_firmware {
     int receive_bytes;       /* of its receive buffer that may be filled; 0: not known, so that
                               * only one line may be under way */
     int command_slots;       /* commands it queues besides; 1 where it is not known */
+    int told_slots;          /* by the last ok */
     int usual_receive_bytes; /* as it comes, if nobody changed it: for who is sure of that, and… */
     int usual_command_slots; /* …for a firmware that tells its slots; 0, 1: unknown */
     int planner_blocks;      /* moves accepted but not yet made, at most */
@@ -59,8 +60,8 @@ const fio_firmware *fio_firmware_of(fio_firmware_kind kind);
 const fio_firmware *fio_firmware_identify(const fio_answer *answer);
 
 /* Let an answer change what is known: a "Cap:", an ok with P and B, the EXTRUDER_COUNT of M115. The
- * kind stays; anything else changes nothing. An ok's B is taken for the slots there are only if it
- * is more than any before it. */
+ * kind stays; anything else changes nothing. Slots are what two oks in
+ * a row told to be free at least: one number alone may be damaged. */
 void fio_firmware_learn(fio_firmware *firmware, const fio_answer *answer);
 
 /* How a command behaves: may it take long without anything being wrong, does it make moves … */

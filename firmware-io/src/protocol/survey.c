@@ -1,4 +1,3 @@
-#define _GNU_SOURCE /* memmem() */
 #include "protocol/survey.h"
 
 #include <string.h>
@@ -66,32 +65,17 @@ int32_t fio_comment_layers(const char *comment, size_t length) {
     return fio_words_integer(&words, &layers) && layers < INT32_MAX ? (int32_t)layers : -1;
 }
 
-/* A comment's first byte is the first of its line. `hit` is at "LAYER". */
-static const char *comment_of(const char *block, const char *hit, bool whole_file_start) {
-    static const char bambu[] = "; CHANGE_";
-    const char *start = hit - 1;
-    if (hit - block >= (int)sizeof bambu - 1 &&
-        memcmp(hit - (sizeof bambu - 1), bambu, sizeof bambu - 1) == 0)
-        start = hit - (sizeof bambu - 1);
-    if (start < block || *start != ';')
-        return NULL;
-    if (start == block)
-        return whole_file_start ? start : NULL;
-    return start[-1] == '\n' || start[-1] == '\r' ? start : NULL;
-}
-
 /* Marks that begin early enough in the block to be whole; the rest is looked at with the next one.
- */
+ * Most bytes are no ';', and memchr() passes over those many at once. */
 static void count_marks(fio_survey *survey, const char *block, size_t size, size_t limit,
                         bool file_start) {
-    static const char word[] = "LAYER";
-    const char *p = block, *end = block + size;
-    while ((p = memmem(p, (size_t)(end - p), word, sizeof word - 1)) != NULL) {
-        const char *comment = comment_of(block, p, file_start);
-        p += sizeof word - 1;
-        if (!comment || (size_t)(comment - block) >= limit)
-            continue;
-        fio_layer_mark mark = fio_layer_mark_of(comment, (size_t)(end - comment));
+    const char *end = block + size;
+    for (const char *p = block; p < block + limit; p++) {
+        p = memchr(p, ';', (size_t)(block + limit - p));
+        if (!p)
+            return;
+        bool begins = p == block ? file_start : p[-1] == '\n' || p[-1] == '\r';
+        fio_layer_mark mark = begins ? fio_layer_mark_of(p, (size_t)(end - p)) : FIO_MARK_NONE;
         if (survey->mark == FIO_MARK_NONE)
             survey->mark = mark;
         survey->layers += mark != FIO_MARK_NONE && mark == survey->mark;
