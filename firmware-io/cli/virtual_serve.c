@@ -143,9 +143,12 @@ static fio_status stand_in(serving *s) {
 static void work_off(serving *s) {
     char bytes[512];
     double now = fio_pace_now(&s->pace);
-    for (int i = 0; i < STEPS_MOST && fio_machine_working(s->machine); i++) {
+    for (int i = 0; i < STEPS_MOST; i++) {
+        /* Nobody else reads what it says; and reports that come by themselves are no work. */
         while (fio_machine_read(s->machine, now, bytes, sizeof bytes) > 0)
             continue;
+        if (!fio_machine_working(s->machine))
+            break;
         double next = fio_machine_next(s->machine);
         if (!(next < INFINITY))
             break;
