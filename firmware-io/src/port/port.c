@@ -118,7 +118,8 @@ static fio_status wait_for(const char *name, double seconds, fio_port_table *tab
     if (state != USABLE && searched(name) && seconds >= 1 && fio_usb_watch_open(&watch) != FIO_OK)
         watch = NULL;
     while (state != USABLE && (left = end - fio_monotonic()) > 0) {
-        if (!watch || fio_usb_watch_wait(watch, left < 0.2 ? left : 0.2) != FIO_OK)
+        /* Of a device that may be opened at last no event tells. */
+        if (!watch || state == THERE || fio_usb_watch_wait(watch, left) != FIO_OK)
             poll(NULL, 0, fio_poll_milliseconds(left < 0.1 ? left : 0.1));
         state = look(name, table);
     }
