@@ -121,10 +121,11 @@ static void executed(void *context, const fio_executed *entry) {
     }
     if (record->number[index] != entry->number) {
         record->executed[index]++; /* of a run before, told late */
+        record->last_executed += index == record->last_executed;
         return;
     }
-    if (index > record->next && record->next >= 0 &&
-        fio_machine_count(record->machine)->resets > record->run_resets)
+    int turn = record->next >= 0 ? record->next : record->last_executed;
+    if (index > turn && fio_machine_count(record->machine)->resets > record->run_resets)
         return; /* done at once, ahead of moves that a reset threw away */
     if (record->next < 0)
         record->first = (int)index;
@@ -279,7 +280,9 @@ void print_run(print_result *result, print_record *record, const print_plan *pla
     result->plugged = fio_machine_plugged(record->machine);
     result->seconds = fio_transport_now(transport) - start;
     if (plan->verbose)
-        printf("%10.4f == status %d: %s\n", result->seconds, result->status, result->message);
+        printf("%10.4f == status %d: %s (accepted %lld, made %lld)\n", result->seconds,
+               result->status, result->message, (long long)result->resume.accepted,
+               (long long)result->resume.made);
     fio_streamer_free(self.streamer);
     fio_source_close(source);
     fio_transport_close(transport);

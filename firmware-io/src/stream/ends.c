@@ -115,8 +115,11 @@ void fio_end(fio_streamer *streamer, fio_status status, bool renumber, const cha
         va_end(values);
     }
     if (streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NAME) {
-        done(streamer, false);
-        return;
+        if (!streamer->has_resume || streamer->pulse.heard <= streamer->started) {
+            done(streamer, false); /* nothing was begun, or nobody is there */
+            return;
+        }
+        renumber = true;
     }
     if (renumber) {
         streamer->renumbered = true;

@@ -102,7 +102,8 @@ static bool send_host(fio_streamer *streamer) {
     } else {
         bool fits = run_fits(streamer);
         int64_t next = streamer->next;
-        if (!fits || (!send_new(streamer, command->text, command->length, NULL, false) &&
+        bool asks = !streamer->echoes && !strcmp(command->text, "M105"); /* as a marker does */
+        if (!fits || (!send_new(streamer, command->text, command->length, NULL, asks) &&
                       fio_window_open(streamer, wire_length(streamer, command->length)) == false))
             return false;
         if (streamer->next == next && !fio_history_has_room(streamer))
@@ -187,6 +188,11 @@ bool fio_feed(fio_streamer *streamer) {
     while (may_send(streamer) && streamer->out_length == 0) {
         if (streamer->cursor < streamer->next)
             return send_again(streamer);
+        if (streamer->probe && fio_marker_due(streamer) && run_fits(streamer)) {
+            if (!send_marker(streamer))
+                return false;
+            continue;
+        }
         if (!fio_queue_is_empty(streamer) &&
             (run_fits(streamer) || streamer->state != FIO_STREAM_RUNNING)) {
             if (!send_host(streamer))

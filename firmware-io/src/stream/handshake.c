@@ -149,6 +149,7 @@ static void skip_to(fio_streamer *streamer, int64_t index, bool anew) {
             fio_end_now(streamer, status, "%s", fio_error_message());
             return;
         }
+        streamer->job_sent = start;
     }
     read_on(streamer);
 }
@@ -279,7 +280,8 @@ static void number_again(fio_streamer *streamer) {
 
 static void give_up(fio_streamer *streamer) {
     const char *hint =
-        streamer->rubbish ? "what comes is rubbish: is the rate (--baud) right?"
+        streamer->halted    ? "it is halted: switch it off and on, or reset it"
+        : streamer->rubbish ? "what comes is rubbish: is the rate (--baud) right?"
         : streamer->pulse.heard > streamer->started
             ? "it says something, but does not answer: is another program using it?"
             : "nothing came back: is it switched on, and is the rate (--baud) right?";
@@ -342,7 +344,7 @@ static void started(fio_streamer *streamer, const fio_answer *answer) {
         firmware->kind < FIO_FIRMWARE_KINDS)
         streamer->firmware = *firmware;
     streamer->started_anew = true;
-    streamer->opened_file = false;
+    streamer->opened_file = streamer->halted = false;
     fio_queue_clear(streamer);
     streamer->handshaking = false;
     go_to(streamer, FIO_GREETING_BOOT, STARTED_SECONDS);
@@ -381,6 +383,11 @@ void fio_handshake_hear(fio_streamer *streamer, const fio_answer *answer) {
     }
 }
 
+bool fio_handshake_halted(fio_streamer *streamer) {
+    streamer->halted = true;
+    return streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NAME;
+}
+
 bool fio_handshake_ok(fio_streamer *streamer) {
     if (streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NUMBER)
         return true;
@@ -414,6 +421,8 @@ bool fio_handshake_resend(fio_streamer *streamer, int64_t number) {
         streamer->step_until = fmin(streamer->step_until, streamer->now + 0.1);
         return true;
     }
+    if (greeting && streamer->greeting < FIO_GREETING_NUMBER)
+        return true; /* said to somebody before us */
     bool fresh = streamer->accepted == FIO_FIRST_NUMBER && (greeting || streamer->ending);
     if (fresh && (number <= streamer->accepted || number > streamer->next) &&
         streamer->renumbered) {

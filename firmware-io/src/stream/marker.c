@@ -12,7 +12,7 @@
 
 #define RETRY_SECONDS 0.3   /* its ok came, its echo did not */
 #define DOUBLE_SECONDS 0.05 /* an answer so soon after another is its double */
-enum { ECHOES_MISSED_MOST = 3, TOKEN = 7 };
+enum { ECHOES_MISSED_MOST = 4, TOKEN = 7 };
 
 /* Seven hexadecimal digits of the number, mixed so that no two damaged bits make one of another. */
 static void token_of(int64_t number, char token[TOKEN + 1]) {
@@ -49,9 +49,10 @@ static bool unsure(const fio_streamer *streamer) {
 
 /* When to send one although nothing asks for it; INFINITY: not before something else happens. */
 double fio_marker_deadline(const fio_streamer *streamer) {
-    bool wanted = streamer->state != FIO_STREAM_DONE && streamer->host_first == streamer->host_last;
+    bool wanted =
+        streamer->state != FIO_STREAM_DONE && (streamer->probe || fio_queue_is_empty(streamer));
     if (streamer->plain || streamer->opened_file || streamer->handshaking || !wanted ||
-        !unsure(streamer) || streamer->cursor < streamer->next)
+        !(unsure(streamer) || streamer->probe) || streamer->cursor < streamer->next)
         return INFINITY;
     if (streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NAME)
         return INFINITY;
@@ -71,9 +72,9 @@ bool fio_marker_due(const fio_streamer *streamer) {
     return fio_marker_deadline(streamer) <= streamer->now;
 }
 
-static void credit(fio_streamer *streamer, int64_t number, bool has_ok) {
+static void credit(fio_streamer *streamer, int64_t number) {
     fio_history_execute(streamer, number);
-    fio_window_set(streamer, has_ok ? number : number - 1);
+    fio_window_set(streamer, number - 1); /* its ok is still to come */
     streamer->echoes_missed = 0;
 }
 
@@ -89,11 +90,25 @@ bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
         token_of(n, token);
         if (memcmp(token, tail, TOKEN) == 0) {
             streamer->echo_proved = true;
-            credit(streamer, n, false);
+            credit(streamer, n);
             return true;
         }
     }
     return false;
+}
+
+/* The answer of an M105 may have been lost: this one counts for the first that has none. */
+static void credit_oldest(fio_streamer *streamer) {
+    for (int64_t n = streamer->executed + 1; n < streamer->next; n++) {
+        const fio_sent_line *line = fio_history_line(streamer, n);
+        if (!line || !line->marker || !(line->time <= streamer->now))
+            continue;
+        fio_history_execute(streamer, n);
+        if (n > streamer->answered)
+            fio_window_set(streamer, n);
+        streamer->echoes_missed = 0;
+        return;
+    }
 }
 
 /* An ok was counted: perhaps it is the marker's. */
@@ -101,19 +116,15 @@ void fio_marker_answered(fio_streamer *streamer, const fio_answer *answer) {
     if (streamer->plain || streamer->marker <= streamer->executed)
         return;
     if (!streamer->echoes && answer->has_temperatures) {
-        bool doubled = streamer->now - streamer->marker_answered < DOUBLE_SECONDS &&
-                       streamer->marker_time < streamer->marker_answered;
-        if (!doubled && !streamer->marker_told) {
-            streamer->marker_told = true;
-            credit(streamer, streamer->marker, true);
-        }
-        streamer->marker_answered = streamer->now;
+        if (streamer->now - streamer->temperatures_told >= DOUBLE_SECONDS)
+            credit_oldest(streamer);
+        streamer->temperatures_told = streamer->now;
         return;
     }
     if (streamer->answered < streamer->marker || streamer->marker_told)
         return;
     streamer->marker_told = true;
-    streamer->marker_answered = streamer->now;
-    if (++streamer->echoes_missed >= ECHOES_MISSED_MOST && !streamer->echo_proved)
+    if (streamer->echoes && ++streamer->echoes_missed >= ECHOES_MISSED_MOST &&
+        !streamer->echo_proved)
         streamer->echoes = false; /* answered again and again, but never echoed: it can't */
 }

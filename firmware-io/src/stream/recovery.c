@@ -167,7 +167,7 @@ static void stalled(fio_streamer *streamer) {
     if (streamer->opened_file || streamer->run_count == FIO_STREAM_RUNS) {
         recovery->allow_one = false;
         fio_recovery_provoke(streamer);
-    } else if (fio_queue_is_empty(streamer)) {
+    } else {
         streamer->probe = true;
     }
 }

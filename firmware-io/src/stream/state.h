@@ -129,7 +129,7 @@ struct fio_streamer {
 
     /* The marker: a command whose answer proves that all before it was executed. */
     int64_t marker, marker_lines; /* the newest; lines behind it */
-    double marker_time, marker_answered;
+    double marker_time, temperatures_told;
     bool marker_told; /* it had its ok */
     bool probe;       /* one is wanted because an answer is overdue */
     int echoes_missed;
@@ -156,7 +156,7 @@ struct fio_streamer {
     int attempts;
     bool resume_saved; /* in the report, before the numbers were set anew */
     bool started_anew; /* "start" was heard, or the firmware counts from elsewhere */
-    bool rubbish;
+    bool rubbish, halted;
     int64_t told_last; /* "Last Line" as told once; -1 */
     bool handshaking;  /* an M110 has no ok yet */
     bool named;        /* M115 was answered */
@@ -244,6 +244,7 @@ double fio_handshake_deadline(const fio_streamer *streamer);
 void fio_handshake_hear(fio_streamer *streamer, const fio_answer *answer);
 bool fio_handshake_ok(fio_streamer *streamer); /* true: the ok was its own */
 bool fio_handshake_resend(fio_streamer *streamer, int64_t number);
+bool fio_handshake_halted(fio_streamer *streamer); /* true: that may have been long ago */
 void fio_handshake_step(fio_streamer *streamer);
 void fio_handshake_skipped(fio_streamer *streamer);
 

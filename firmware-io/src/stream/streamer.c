@@ -211,7 +211,8 @@ static void hear(void *context, const fio_answer *answer) {
         hear_start(streamer);
         break;
     case FIO_ANSWER_HALTED:
-        fio_end_halted(streamer, answer);
+        if (!fio_handshake_halted(streamer))
+            fio_end_halted(streamer, answer);
         break;
     case FIO_ANSWER_WAIT: /* idle: whatever is unanswered will remain so */
         if (fio_window_lines(streamer) > 0)
@@ -224,7 +225,8 @@ static void hear(void *context, const fio_answer *answer) {
         fio_firmware_learn(&streamer->firmware, answer);
         break;
     case FIO_ANSWER_PREVENTED:
-        if (!streamer->echo_proved && strstr(answer->text, "118"))
+        if (!streamer->echo_proved &&
+            (strstr(answer->text, "\"M118") || strstr(answer->text, "\"M0118")))
             streamer->echoes = false;
         break;
     default:

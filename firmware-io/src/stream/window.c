@@ -76,7 +76,7 @@ void fio_window_set(fio_streamer *streamer, int64_t answered) {
 /* An ok that names its line: believed if it agrees with the count, or with the one before it, since
  * a bit of the number may be wrong. */
 static void take_numbered(fio_streamer *streamer, int64_t number) {
-    if (number <= streamer->accepted || number >= streamer->cursor)
+    if (number <= streamer->answered || number >= streamer->cursor)
         return;
     bool agrees = number == streamer->answered + 1 || number == streamer->claimed + 1;
     streamer->claimed = number;
