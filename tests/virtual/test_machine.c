@@ -225,6 +225,32 @@ static void test_emergencies(void) {
     bench_free(b);
 }
 
+/* M410 stops where it is, and it knows where that is. */
+static void test_quick_stop(void) {
+    bench *b = bench_make(bench_options());
+    bench_ask(b, "G28\n", 20);
+    bench_ask(b, "G1 X100 F600\nG1 X0\nM117 after\n", 5.1); /* 10 mm/s, 0.1 s after it came */
+    bench_ask(b, "M410\n", 0.1);
+    fio_state state;
+    fio_virtual_printer_state(fio_machine_printer(b->machine), &state);
+    CHECK_NEAR(50, state.machine[0], 0.1);
+    CHECK(!strstr(b->log, "G1") && strstr(b->log, "M117 after\n"));
+    bench_ask(b, "G1 X60\nM400\n", 2);
+    CHECK(strstr(b->log, "G1 X60\n"));
+    bench_free(b);
+}
+
+/* A processor that hangs answers no emergency until it is back. */
+static void test_emergency_while_it_hangs(void) {
+    fio_machine_options options = bench_options();
+    options.script = "at line 1 silent 10";
+    bench *b = bench_make(options);
+    bench_expect(b, "G90\nM112\n", 9, "");
+    CHECK_NEAR(10, fio_machine_next(b->machine), 0.01);
+    CHECK(strstr(bench_ask(b, "", 2), "kill() called!"));
+    bench_free(b);
+}
+
 static void test_user_waits(void) {
     bench *b = bench_make(bench_options());
     const char *heard = bench_ask(b, "M0\n", 10);
@@ -290,6 +316,8 @@ int main(void) {
     RUN(test_full_planner_holds_the_ok);
     RUN(test_starving);
     RUN(test_emergencies);
+    RUN(test_quick_stop);
+    RUN(test_emergency_while_it_hangs);
     RUN(test_user_waits);
     RUN(test_reports_of_itself);
     RUN(test_reset_by_dtr);

@@ -53,7 +53,7 @@ void fio_fault_byte(fio_machine *machine, uint8_t byte) {
     uint8_t arrived = byte;
     fio_script_happens(machine, FIO_AT_BYTE, (double)++machine->bytes_arrived);
     if (!machine->plugged) {
-        machine->lost_before = true;
+        fio_firmware_lose(machine, byte);
         return;
     }
     if (machine->line_length == 0)
@@ -77,13 +77,14 @@ void fio_fault_byte(fio_machine *machine, uint8_t byte) {
         machine->line_length = 0;
     }
     if (lost)
-        machine->lost_before = true;
+        fio_firmware_lose(machine, byte);
     else
         fio_firmware_receive(machine, arrived, arrived != byte);
 }
 
 static void put(fio_machine *machine, uint8_t byte) {
-    if (!machine->plugged || fio_wire_room(&machine->out) == 0)
+    bool heard = machine->plugged && (machine->dtr || !machine->options.mute_without_dtr);
+    if (!heard || fio_wire_room(&machine->out) == 0)
         return;
     if (wrong_rate(machine))
         byte = (uint8_t)fio_random_next(&machine->random);

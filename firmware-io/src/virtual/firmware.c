@@ -20,6 +20,11 @@ void fio_firmware_reset(fio_machine *machine) {
     machine->counts.resets++;
     machine->received_first = machine->received_last;
     machine->reader = (fio_reader){0};
+    machine->unpacker = (fio_unpacker){0};
+    machine->lost_before = machine->lost_before || machine->mid_line;
+    machine->mid_line = false;
+    machine->held = 0;
+    machine->pending = FIO_EMERGENCY_NONE;
     machine->line_tainted = false;
     machine->taint_at = INT32_MAX;
     machine->emergency = (fio_emergency_parser){0};
@@ -43,7 +48,7 @@ void fio_firmware_emergency(fio_machine *machine, fio_emergency what) {
         break;
     case FIO_EMERGENCY_STOP:
         fio_printer_advance(printer, machine->now);
-        fio_printer_abandon(printer);
+        fio_printer_stop(printer);
         printer->arc.next = printer->arc.chords + 1;
         break;
     case FIO_EMERGENCY_BREAK:
@@ -80,6 +85,15 @@ bool fio_firmware_may_receive(const fio_machine *machine) {
            (unsigned)machine->options.receive_bytes - 1; /* a ring keeps one place empty */
 }
 
+static bool is_end(uint8_t byte) {
+    return byte == '\n' || byte == '\r';
+}
+
+/* A line that is lost as a whole damages no other. */
+void fio_firmware_lose(fio_machine *machine, uint8_t byte) {
+    machine->lost_before = !is_end(byte) || machine->mid_line;
+}
+
 static bool out_of_band(const fio_machine *machine) {
     return machine->options.emergency_parser && machine->dialect->out_of_band;
 }
@@ -89,37 +103,49 @@ void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted) {
         fio_firmware_say(machine, machine->dialect->dead);
     if (machine->processor == FIO_HALTED && byte == 0x18 && !machine->dialect->identity)
         machine->plan.reset = machine->quick_reset = true;
-    if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED)
+    if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED) {
+        fio_firmware_lose(machine, byte);
         return;
+    }
     if (machine->dialect->numbering == FIO_NUMBERS_IGNORED && !machine->dialect->out_of_band &&
         fio_firmware_real_time(machine, byte))
         return;
     if (out_of_band(machine)) {
-        fio_firmware_emergency(machine, fio_emergency_feed(&machine->emergency, (char)byte));
+        fio_emergency what = fio_emergency_feed(&machine->emergency, (char)byte);
+        if (what && machine->now < machine->plan.silent_until)
+            machine->pending = what;
+        else
+            fio_firmware_emergency(machine, what);
         if (machine->processor == FIO_HALTED)
             return;
     }
     if (!fio_firmware_may_receive(machine)) {
         machine->counts.overruns++;
-        machine->lost_before = true;
+        fio_firmware_lose(machine, byte);
         return;
     }
     tainted = tainted || machine->lost_before;
     machine->lost_before = false;
+    machine->mid_line = !is_end(byte);
     machine->received[machine->received_last++ & (FIO_RECEIVE_MOST - 1)] =
         (uint16_t)(byte | (tainted ? FIO_TAINT : 0));
 }
 
 /* Where the line is damaged first; bytes lost show at the one after them. */
-static bool read_byte(fio_machine *machine, uint16_t got) {
-    char byte = (char)(got & 0xff);
-    bool whole = fio_reader_feed(&machine->reader, byte);
-    if (got & FIO_TAINT) {
-        machine->line_tainted = machine->line_tainted || machine->reader.done;
-        int at = machine->reader.length > 0 ? machine->reader.length - 1 : 0;
-        machine->taint_at = at < machine->taint_at ? at : machine->taint_at;
-    }
-    return whole;
+static void note_taint(fio_machine *machine) {
+    machine->line_tainted = machine->line_tainted || machine->reader.done;
+    int at = machine->reader.length > 0 ? machine->reader.length - 1 : 0;
+    machine->taint_at = at < machine->taint_at ? at : machine->taint_at;
+}
+
+static void report_packing(fio_machine *machine) {
+    const fio_unpacker *unpacker = &machine->unpacker;
+    char bytes[32];
+    fio_text text = fio_text_in(bytes, sizeof bytes);
+    fio_text_string(&text, "[MP] PV01 ");
+    fio_text_string(&text, unpacker->on ? "ON " : "OFF ");
+    fio_text_string(&text, unpacker->no_spaces ? "NSP" : "ESP");
+    fio_firmware_say(machine, bytes);
 }
 
 /* Damage behind the checksum changes nothing that is executed. */
@@ -185,19 +211,36 @@ static void enqueue_from_card(fio_machine *machine) {
     queued->silent = queued->from_card = true;
 }
 
+static void read_character(fio_machine *machine, char character, bool tainted) {
+    fio_reader *reader = &machine->reader;
+    bool whole = fio_reader_feed(reader, character);
+    if (tainted)
+        note_taint(machine);
+    if (whole)
+        take_line(machine);
+    if (!machine->dialect->identity && reader->done && reader->length == 0)
+        fio_firmware_ok(machine); /* grbl answers empty lines, too */
+    if (reader->done) {           /* a false end of line taints the line after it, too */
+        machine->line_tainted = tainted;
+        machine->taint_at = INT32_MAX;
+    }
+}
+
 static void read_lines(fio_machine *machine) {
     while (machine->queued < machine->options.command_slots && !machine->plan.reset &&
            !machine->plan.halt && machine->received_first != machine->received_last) {
         uint16_t got = machine->received[machine->received_first++ & (FIO_RECEIVE_MOST - 1)];
-        bool whole = read_byte(machine, got);
-        if (whole)
-            take_line(machine);
-        if (!machine->dialect->identity && machine->reader.done && machine->reader.length == 0)
-            fio_firmware_ok(machine); /* grbl answers empty lines, too */
-        if (machine->reader.done) {   /* a false end of line taints the line after it, too */
-            machine->line_tainted = got & FIO_TAINT;
-            machine->taint_at = INT32_MAX;
-        }
+        char text[4] = {(char)(got & 0xff)};
+        int count = 1;
+        bool told = false;
+        if (machine->dialect->capabilities)
+            count = fio_unpacker_feed(&machine->unpacker, (uint8_t)got, text, &told);
+        if (told)
+            report_packing(machine);
+        if (count == 0 && (got & FIO_TAINT)) /* it shows in what comes of it */
+            machine->line_tainted = true;
+        for (int i = 0; i < count; i++)
+            read_character(machine, text[i], got & FIO_TAINT);
     }
     while (machine->queued < machine->options.command_slots && fio_firmware_card_line(machine))
         enqueue_from_card(machine);
@@ -442,7 +485,7 @@ static double next_work(const fio_machine *machine) {
 double fio_firmware_next(const fio_machine *machine) {
     double next = next_work(machine);
     if (machine->now < machine->plan.silent_until)
-        next = fmax(next, machine->plan.silent_until);
+        next = machine->plan.silent_until;
     if (machine->processor != FIO_HALTED && machine->processor != FIO_BOOTING)
         next = fmin(next, fio_thermal_next(machine));
     return fmin(next, fmin(fio_fault_next(machine), fio_script_next(machine)));

@@ -63,6 +63,21 @@ void fio_printer_added(fio_virtual_printer *printer, bool along_path) {
         begin_block(printer, printer->clock);
 }
 
+void fio_printer_stop(fio_virtual_printer *printer) {
+    const fio_planner *planner = &printer->planner;
+    const fio_block *block = &printer->block;
+    if (printer->running) { /* a constant speed is near enough */
+        double took = printer->block_end - printer->block_start;
+        double done = took > 0 ? (printer->clock - printer->block_start) / took : 1;
+        for (int i = 0; i < 3; i++)
+            printer->machine[i] = block->start[i] + (block->end[i] - block->start[i]) * done;
+    } else if (planner->count > 0) {
+        for (int i = 0; i < 3; i++)
+            printer->machine[i] = planner->blocks[planner->oldest].start[i];
+    }
+    fio_printer_abandon(printer);
+}
+
 int fio_printer_moves_free(const fio_virtual_printer *printer) {
     /* One place of Marlin's ring stays empty; the block being made keeps its own. */
     int used = printer->planner.count + (printer->running ? 1 : 0);

@@ -6,8 +6,9 @@
 
 #include "base/memory.h"
 
-#define MERGE_SECONDS 0.016 /* FTDI's latency timer, as it is set from the factory */
-#define BITS_PER_BYTE 10    /* a start bit, eight, a stop bit */
+#define FINISHING_TURNS 1000000 /* what is not done by then is never done */
+#define MERGE_SECONDS 0.016     /* FTDI's latency timer, as it is set from the factory */
+#define BITS_PER_BYTE 10        /* a start bit, eight, a stop bit */
 
 fio_machine_options fio_machine_options_defaults(void) {
     return (fio_machine_options){
@@ -156,6 +157,7 @@ void fio_machine_advance(fio_machine *machine, double now) {
     }
     machine->now = now;
     fio_printer_advance(machine->printer, now);
+    machine->counts.starved = machine->printer->starved;
     arrive(machine);
 }
 
@@ -221,10 +223,16 @@ size_t fio_machine_pending(const fio_machine *machine) {
     return fio_wire_waiting(&machine->in);
 }
 
+static size_t lose_waiting(fio_machine *machine) {
+    const fio_wire *in = &machine->in;
+    for (unsigned i = in->arrived; i != in->last; i++)
+        fio_firmware_lose(machine, fio_wire_at(in, i));
+    return fio_wire_discard(&machine->in, machine->now);
+}
+
 size_t fio_machine_discard(fio_machine *machine, double now) {
     fio_machine_advance(machine, now);
-    machine->lost_before = machine->lost_before || fio_wire_waiting(&machine->in) > 0;
-    return fio_wire_discard(&machine->in, machine->now);
+    return lose_waiting(machine);
 }
 
 void fio_machine_set_lines(fio_machine *machine, double now, bool dtr, bool rts) {
@@ -241,6 +249,15 @@ void fio_machine_set_rate(fio_machine *machine, double now, int64_t rate) {
     machine->host_rate = rate;
 }
 
+/* It has something to do that ends of itself. */
+static bool will_go_on(const fio_machine *machine) {
+    const fio_virtual_printer *printer = machine->printer;
+    if (machine->processor == FIO_HALTED || (printer->waiting && isinf(printer->wait_end)))
+        return fio_printer_next(printer) < INFINITY;
+    return machine->processor == FIO_BOOTING || machine->queued > 0 ||
+           fio_printer_next(printer) < INFINITY;
+}
+
 bool fio_machine_working(const fio_machine *machine) {
     if (machine->processor == FIO_HALTED)
         return fio_wire_waiting(&machine->out) > 0;
@@ -255,8 +272,8 @@ bool fio_machine_plugged(const fio_machine *machine) {
 
 void fio_machine_unplug(fio_machine *machine) {
     machine->plugged = machine->dtr = machine->rts = false;
-    machine->lost_before = machine->lost_before || fio_wire_waiting(&machine->in) > 0;
-    fio_wire_discard(&machine->in, machine->now);
+    lose_waiting(machine);
+    machine->held = 0;
     fio_wire_discard(&machine->out, machine->now); /* what has arrived may still be read */
     machine->merged_until = machine->now;
 }
@@ -270,9 +287,14 @@ void fio_machine_plug(fio_machine *machine, double now) {
 }
 
 fio_status fio_machine_finish(fio_machine *machine) {
-    fio_printer_run_out(machine->printer);
-    fio_machine_advance(machine, machine->printer->clock);
-    return fio_virtual_printer_finish(machine->printer);
+    fio_virtual_printer *printer = machine->printer;
+    for (int turns = 0; turns < FINISHING_TURNS && will_go_on(machine); turns++)
+        fio_machine_advance(machine, fmax(fio_firmware_next(machine), machine->now));
+    if (printer->waiting)
+        fio_printer_end_wait(printer);
+    if (printer->open)
+        fio_printer_end_entry(printer);
+    return fio_virtual_printer_finish(printer);
 }
 
 const fio_virtual_printer *fio_machine_printer(const fio_machine *machine) {
@@ -280,6 +302,5 @@ const fio_virtual_printer *fio_machine_printer(const fio_machine *machine) {
 }
 
 const fio_machine_counts *fio_machine_count(const fio_machine *machine) {
-    ((fio_machine *)machine)->counts.starved = machine->printer->starved;
     return &machine->counts;
 }

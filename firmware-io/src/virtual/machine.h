@@ -6,6 +6,7 @@
 
 #include "virtual/card.h"
 #include "virtual/dialect.h"
+#include "virtual/meatpack.h"
 #include "virtual/printer.h"
 #include "virtual/random.h"
 #include "virtual/reader.h"
@@ -81,10 +82,13 @@ struct fio_machine {
     uint16_t received[FIO_RECEIVE_MOST];
     unsigned received_first, received_last;
     bool lost_before; /* bytes were lost before the next one received */
+    bool mid_line;    /* the last byte received was not the end of a line */
+    fio_unpacker unpacker;
     fio_reader reader;
     bool line_tainted; /* as a whole: one of its ends is false */
     int taint_at;      /* where its text is damaged first; INT32_MAX: nowhere */
     fio_emergency_parser emergency;
+    fio_emergency pending; /* came while the processor hung */
 
     fio_queued queue[FIO_SLOTS_MOST];
     int queued, oldest;
@@ -127,7 +131,8 @@ void fio_firmware_step(fio_machine *machine);
 double fio_firmware_next(const fio_machine *machine);
 void fio_firmware_reset(fio_machine *machine);
 void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted);
-bool fio_firmware_may_receive(const fio_machine *machine); /* there is room */
+void fio_firmware_lose(fio_machine *machine, uint8_t byte); /* it never came */
+bool fio_firmware_may_receive(const fio_machine *machine);  /* there is room */
 void fio_firmware_kill(fio_machine *machine, const char *error);
 /* Ask for the line that is due, since this one was not it. */
 void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict, const char *text);

@@ -287,6 +287,8 @@ void fio_printer_move(fio_virtual_printer *printer, const double target[3], doub
         bool level = delta[0] != 0 || delta[1] != 0, moves = level || delta[2] != 0;
         bool along_path = extrusion > 0 && moves;
         block->sequence = printer->sequence;
+        memcpy(block->start, printer->machine, sizeof block->start);
+        memcpy(block->end, end, sizeof end);
         block->activity = along_path ? FIO_EXTRUDING
                           : !moves   ? FIO_RETRACTING
                           : level    ? FIO_TRAVELLING

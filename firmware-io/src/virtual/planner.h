@@ -25,6 +25,7 @@ typedef struct fio_block {
     double rest_squared; /* speed at which it may start from or stop at rest */
     int64_t sequence;    /* of the line it belongs to */
     fio_activity activity;
+    double start[3], end[3]; /* machine coordinates; the planner itself has no use for them */
 } fio_block;
 
 typedef struct fio_planner {

@@ -103,6 +103,7 @@ void fio_printer_advance(fio_virtual_printer *printer, double now);
 double fio_printer_next(const fio_virtual_printer *printer);
 /* The planner, as it is now, lets this line be executed without waiting for it. */
 bool fio_printer_ready(fio_virtual_printer *printer, const fio_line *line);
+void fio_printer_stop(fio_virtual_printer *printer); /* where it is, and forget what is planned */
 int fio_printer_moves_free(const fio_virtual_printer *printer);
 /* The time of a waiting command is over, at `clock`. */
 void fio_printer_end_wait(fio_virtual_printer *printer);

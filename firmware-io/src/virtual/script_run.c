@@ -172,6 +172,12 @@ void fio_script_pass(fio_machine *machine) {
         plan->plug_at = INFINITY;
         machine->plugged = true;
     }
+    if (machine->pending && machine->now >= plan->silent_until) {
+        fio_emergency what = machine->pending;
+        machine->pending = FIO_EMERGENCY_NONE;
+        if (machine->processor != FIO_HALTED && machine->processor != FIO_BOOTING)
+            fio_firmware_emergency(machine, what);
+    }
     const char *halt = plan->halt;
     if (halt && machine->processor != FIO_HALTED && machine->processor != FIO_BOOTING) {
         char bytes[256];
