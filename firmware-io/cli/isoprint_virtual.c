@@ -31,8 +31,11 @@ static void on_executed_checked(void *context, const fio_executed *executed) {
     virtual_check_entry(to->check, executed);
 }
 
-static fio_status open_log(FILE **log, const char *path) {
+/* `followed`: each line is to be seen at once, by whoever watches a printer at work. */
+static fio_status open_log(FILE **log, const char *path, bool followed) {
     *log = path ? fopen(path, "wbe") : NULL;
+    if (*log && followed)
+        setvbuf(*log, NULL, _IOLBF, BUFSIZ);
     return path && !*log
                ? fio_fail(FIO_NOT_WRITTEN, "%s: can't be written: %s", path, strerror(errno))
                : FIO_OK;
@@ -56,9 +59,9 @@ static fio_status run_file(const virtual_arguments *given, logs *to) {
 
 static fio_status run(const virtual_arguments *given, int *code) {
     logs to = {NULL, NULL, NULL};
-    fio_status status = open_log(&to.log, given->log);
+    fio_status status = open_log(&to.log, given->log, !given->run);
     if (status == FIO_OK)
-        status = open_log(&to.executed, given->executed);
+        status = open_log(&to.executed, given->executed, !given->run);
     if (status == FIO_OK && given->check)
         status = virtual_check_open(&to.check, given->check, given->host_commands);
     const fio_execution_log log = {on_executed, &to};
