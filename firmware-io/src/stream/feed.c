@@ -77,9 +77,10 @@ static bool send_new(fio_streamer *streamer, const char *text, size_t length,
 
 /* Another run of host commands can be kept in mind. */
 static bool run_fits(const fio_streamer *streamer) {
+    if (streamer->plain || streamer->run_count < FIO_STREAM_RUNS)
+        return true;
     const fio_stream_run *last = &streamer->runs[streamer->run_count - 1];
-    return streamer->plain || streamer->run_count < FIO_STREAM_RUNS ||
-           last->number + last->count == streamer->next;
+    return last->number + last->count == streamer->next;
 }
 
 static bool send_marker(fio_streamer *streamer) {
