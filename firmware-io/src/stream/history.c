@@ -35,8 +35,8 @@ bool fio_history_has_room(const fio_streamer *streamer) {
 }
 
 static bool note_run(fio_streamer *streamer, int64_t number) {
-    fio_stream_run *last = &streamer->runs[streamer->run_count - 1];
-    if (streamer->run_count > 0 && last->number + last->count == number) {
+    fio_stream_run *last = streamer->run_count ? &streamer->runs[streamer->run_count - 1] : NULL;
+    if (last && last->number + last->count == number) {
         last->count++;
         return true;
     }
