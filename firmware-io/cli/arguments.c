@@ -223,9 +223,13 @@ static void read_switch(fio_arguments *arguments, flag_number flag) {
 
 static fio_status read_flag(fio_arguments *arguments, const given_flag *given) {
     const char **const texts[FLAG_NUMBERS] = {
-        [FLAG_port] = &arguments->port,         [FLAG_firmware] = &arguments->firmware,
-        [FLAG_journal] = &arguments->journal,   [FLAG_resume_from] = &arguments->resume_from,
-        [FLAG_on_pause] = &arguments->on_pause, [FLAG_on_cancel] = &arguments->on_cancel,
+        [FLAG_port] = &arguments->port,
+        [FLAG_firmware] = &arguments->firmware,
+        [FLAG_journal] = &arguments->journal,
+        [FLAG_resume_from] = &arguments->resume_from,
+        [FLAG_on_pause] = &arguments->on_pause,
+        [FLAG_on_cancel] = &arguments->on_cancel,
+        [FLAG_virtual] = &arguments->virtual_options,
         [FLAG_log] = &arguments->log,
     };
     if (texts[given->flag]) {

@@ -25,7 +25,8 @@ enum { FIO_SENDS_MOST = 64 };
 typedef struct fio_arguments {
     fio_work work;
     const char *file; /* "-": standard input */
-    const char *port, *firmware, *journal, *resume_from, *on_pause, *on_cancel, *upload, *log;
+    const char *port, *firmware, *journal, *resume_from, *on_pause, *on_cancel, *upload, *log,
+        *virtual_options;
     const char *send[FIO_SENDS_MOST];
     int send_count;
     int64_t baud; /* bits/s; 0: auto */

@@ -9,6 +9,8 @@
 #include "job.h"
 #include "signals.h"
 
+enum { SHOWN_MOST = 10 }; /* of each kind, to a person */
+
 /* A printer hotter and larger than any, where nothing is known of the one it is for. */
 static fio_virtual_options options_of(const fio_arguments *arguments) {
     fio_virtual_options options = fio_virtual_options_defaults();
@@ -54,10 +56,11 @@ static bool counts(const fio_arguments *arguments, const fio_event *event) {
 }
 
 static void tell_event(fio_narrator *narrator, const fio_job *job, const char *kind,
-                       const fio_event *event) {
+                       const fio_event *event, int64_t before) {
     fio_json *json = &narrator->json;
-    fio_screen_say(&narrator->screen, "%s:%" PRId64 ": %s %s: %s", job->name, event->line, kind,
-                   fio_event_name(event->code), event->text);
+    if (before < SHOWN_MOST)
+        fio_screen_say(&narrator->screen, "%s:%" PRId64 ": %s %s: %s", job->name, event->line, kind,
+                       fio_event_name(event->code), event->text);
     if (!narrator->use_json)
         return;
     fio_json_begin(json, kind);
@@ -67,6 +70,12 @@ static void tell_event(fio_narrator *narrator, const fio_job *job, const char *k
     fio_narrator_object(narrator);
 }
 
+static void tell_rest(fio_narrator *narrator, const fio_job *job, const char *kind, int64_t count) {
+    if (count > SHOWN_MOST)
+        fio_screen_say(&narrator->screen, "%s: %" PRId64 " more %s", job->name, count - SHOWN_MOST,
+                       kind);
+}
+
 static fio_status tell_events(const fio_arguments *arguments, fio_narrator *narrator,
                               const fio_job *job, const fio_virtual_printer *printer) {
     const fio_statistics *statistics = fio_virtual_printer_statistics(printer);
@@ -74,11 +83,14 @@ static fio_status tell_events(const fio_arguments *arguments, fio_narrator *narr
     int64_t faults = statistics->fault_count;
     if (arguments->bed[0] <= 0)
         faults -= statistics->count[FIO_FAULT_OUTSIDE];
+    int64_t told = 0;
     for (int64_t i = 0; (event = fio_virtual_printer_fault(printer, i)); i++)
         if (counts(arguments, event))
-            tell_event(narrator, job, "fault", event);
+            tell_event(narrator, job, "fault", event, told++);
+    tell_rest(narrator, job, "faults", faults);
     for (int64_t i = 0; (event = fio_virtual_printer_warning(printer, i)); i++)
-        tell_event(narrator, job, "warning", event);
+        tell_event(narrator, job, "warning", event, i);
+    tell_rest(narrator, job, "warnings", statistics->warning_count);
     return faults == 0 ? FIO_OK
                        : fio_fail(FIO_FAULTY, "%s: %" PRId64 " faults; nothing was sent", job->name,
                                   faults);

@@ -15,23 +15,26 @@ enum { USUAL_RATES = sizeof usual_rates / sizeof *usual_rates };
 /* Of the first question the board may still be starting. */
 static const double first_probe = 8, next_probe = 3; /* s */
 
-static const double wait_slice = 0.25; /* s between two looks at the signals */
+static const double wait_slice = 1; /* s between two looks at the signals */
 
 static fio_status wait_for_port(const char *port, const fio_arguments *arguments) {
     fio_status status = fio_signals_check();
     if (arguments->wait <= 0 || status != FIO_OK)
         return status;
-    for (double left = arguments->wait;; left -= wait_slice) {
-        fio_status found = fio_port_wait(port, fmin(wait_slice, fmax(left, 0)));
+    for (double left = arguments->wait; left > 0; left -= wait_slice) {
+        fio_status found = fio_port_wait(port, fmin(wait_slice, left));
         status = fio_signals_check();
-        if (status != FIO_OK || found != FIO_NO_PRINTER || left <= wait_slice)
+        if (status != FIO_OK || found != FIO_NO_PRINTER)
             return status != FIO_OK ? status : found;
     }
+    return fio_fail(FIO_NO_PRINTER, "%s: did not appear within %.0f s",
+                    strcmp(port, "auto") ? port : "a printer", arguments->wait);
 }
 
 /* ---- who is there ---- */
 
 typedef struct found_firmware {
+    fio_streamer *streamer;
     char *name;
     size_t size;
     bool found;
@@ -50,10 +53,19 @@ static void on_event(void *context, const fio_stream_event *event) {
     }
 }
 
+/* Once it has answered, or a signal wants the end. */
+static void leave(void *context, double now, const struct pollfd *polls, int count) {
+    found_firmware *found = context;
+    if (fio_streamer_report(found->streamer)->state == FIO_STREAM_RUNNING)
+        fio_streamer_finish(found->streamer, now);
+    else if (fio_signals_check() != FIO_OK)
+        fio_streamer_lost(found->streamer, now, FIO_CANCELLED, fio_error_message());
+}
+
 fio_status fio_connection_probe(fio_transport *transport, int64_t rate, double seconds, char *name,
                                 size_t size) {
     fio_streamer *streamer;
-    found_firmware found = {name, size, false};
+    found_firmware found = {NULL, name, size, false};
     fio_stream_listener listener = {on_event, &found};
     fio_stream_options options = fio_stream_options_defaults();
     options.rate = rate;
@@ -62,8 +74,9 @@ fio_status fio_connection_probe(fio_transport *transport, int64_t rate, double s
     fio_status status = fio_streamer_create(&streamer, &options, NULL, NULL, &listener);
     if (status != FIO_OK)
         return status;
-    fio_streamer_finish(streamer, fio_transport_now(transport));
-    status = fio_session_run(transport, streamer, NULL);
+    found.streamer = streamer;
+    fio_session_hooks hooks = {NULL, leave, 0.1, &found};
+    status = fio_session_run(transport, streamer, &hooks);
     fio_streamer_free(streamer);
     if (status == FIO_OK && !found.found)
         snprintf(name, size, "unknown");
@@ -98,6 +111,7 @@ fio_status fio_connection_open(fio_transport **transport, const char *port,
     fio_port_options options = fio_port_options_defaults();
     options.rate = arguments->baud > 0 ? arguments->baud : usual_rates[0];
     options.keep_lines = arguments->no_reset;
+    options.virtual_options = arguments->virtual_options;
     *transport = NULL;
     fio_status status = wait_for_port(port, arguments);
     if (status == FIO_OK)

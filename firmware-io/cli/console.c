@@ -9,6 +9,7 @@ void fio_console_open(fio_console *console, const char *const *commands, int cou
     console->count = count;
     console->at = 0;
     console->ended = console->refused = console->skipping = console->pending = false;
+    console->temperatures = false;
     console->first = console->length = 0;
 }
 
@@ -50,8 +51,14 @@ static fio_status take(fio_console *console, const char *text, size_t length) {
     for (size_t i = 0; i < length; i++)
         if ((unsigned char)text[i] < ' ' && text[i] != '\t')
             return fio_fail(FIO_USAGE, "a line with control characters is no command");
+    if (fio_command_traits(text, length) & (FIO_COMMAND_NUMBERS | FIO_COMMAND_SD_WRITE))
+        return fio_fail(FIO_USAGE,
+                        "%.*s: not by hand: the numbers of the lines are isoprint's, and "
+                        "--upload writes to the card",
+                        (int)(length < 40 ? length : 40), text);
     if (length >= sizeof console->line || fio_encode_line(wire, 999999, text, length, 95) == 0)
-        return fio_fail(FIO_USAGE, "%.40s...: too long for a command", text);
+        return fio_fail(FIO_USAGE, "%.*s...: too long, or no command",
+                        (int)(length < 40 ? length : 40), text);
     memcpy(console->line, text, length);
     console->line[length] = 0;
     console->pending = true;
@@ -104,6 +111,9 @@ fio_status fio_console_feed(fio_console *console, fio_streamer *streamer, double
         }
         if (console->pending && fio_streamer_command(streamer, now, console->line) != FIO_OK)
             return FIO_OK; /* later */
+        if (console->pending &&
+            (!strncmp(console->line, "M105", 4) || !strncmp(console->line, "M155", 4)))
+            console->temperatures = true;
         console->pending = false;
     }
     if (console->ended && console->length == 0)

@@ -17,8 +17,9 @@ typedef struct fio_console {
     size_t first, length; /* what of standard input has been read and not yet been sent */
     char bytes[4096];
     char line[FIO_WIRE_LINE_MOST + 1];
-    bool refused; /* a line could not be sent */
-    bool pending; /* `line` waits for the streamer to take it */
+    bool temperatures, reports; /* M105, M155 was among the lines */
+    bool refused;               /* a line could not be sent */
+    bool pending;               /* `line` waits for the streamer to take it */
 } fio_console;
 
 void fio_console_open(fio_console *console, const char *const *commands, int count);

@@ -121,6 +121,11 @@ static void take_key(fio_control *control, int key, double now) {
 
 /* ---- the session's hooks ---- */
 
+/* Commands are taken; before that, lines of a console are left where they are. */
+static bool listens(const fio_control *control) {
+    return fio_streamer_report(control->streamer)->state == FIO_STREAM_RUNNING;
+}
+
 static int descriptors(void *context, struct pollfd *polls, int most) {
     const fio_control *control = context;
     int count = 0;
@@ -130,7 +135,7 @@ static int descriptors(void *context, struct pollfd *polls, int most) {
         polls[count++] = (struct pollfd){fio_terminal_descriptor(), POLLIN, 0};
     if (control->job && control->job->waits && fio_source_descriptor(control->job->source) >= 0)
         polls[count++] = (struct pollfd){fio_source_descriptor(control->job->source), POLLIN, 0};
-    if (control->console && fio_console_waits(control->console, &polls[count]))
+    if (control->console && listens(control) && fio_console_waits(control->console, &polls[count]))
         count++;
     return count + fio_narrator_descriptors(control->narrator, polls + count);
 }
@@ -139,13 +144,17 @@ static void woken(void *context, double now, const struct pollfd *polls, int cou
     fio_control *control = context;
     (void)polls; /* all of them are read without waiting */
     (void)count;
+    if (control->job)
+        fio_job_look(control->job);
     for (int number; (number = fio_signals_next()) != 0;)
         take_signal(control, number, now);
     for (int key; control->job && (key = fio_terminal_key()) != 0;)
         take_key(control, key, now);
-    if (control->console && !control->cancelled &&
+    if (control->console && listens(control) && !control->cancelled &&
         fio_console_feed(control->console, control->streamer, now) != FIO_OK)
         fio_screen_say(&control->narrator->screen, "%s", fio_error_message());
+    if (control->console && control->console->temperatures)
+        control->narrator->temperatures = true;
     fio_narrator_flush(control->narrator);
     fio_narrator_update(control->narrator, now, fio_streamer_report(control->streamer));
 }

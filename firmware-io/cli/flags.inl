@@ -22,6 +22,10 @@ FIO_FLAG(firmware, 0, "NAME", "asked by M115",
          "klipper, reprapfirmware, smoothie, repetier or grbl.")
 FIO_FLAG(window, 0, "LINES[:BYTES]", "1 to 64 lines, 16 to 65536 bytes; as the firmware tells",
          "Most lines, and bytes, sent before they are answered.")
+FIO_FLAG(
+    virtual, 0, "NAME=VALUE,...", "speed=1",
+    "How the printer behind the port virtual is: speed (times real time; 0: as fast as can be), "
+    "firmware, flip_in, lose_ok, ... and what else docs/isoprint.md lists.")
 FIO_FLAG(list, 0, "", "", "List the ports that a printer may be behind, then end.")
 FIO_FLAG(probe, 0, "", "",
          "With --list: open each port and ask for its firmware. That restarts some boards.")
@@ -34,8 +38,8 @@ FIO_FLAG(journal, 0, "FILE|none", "FILE.journal beside the job",
          "Where it is written down how far the job came. Removed when the job is done.")
 FIO_FLAG(resume_from, 0, "JOURNAL|LINE", "",
          "Go on with a job that broke off: where its journal says, or at this line of the file.")
-FIO_FLAG(on_pause, 0, "FILE", "at most 15 KiB", "G-code to run after the job was paused.")
-FIO_FLAG(on_cancel, 0, "FILE", "at most 15 KiB", "G-code to run after the job was cancelled.")
+FIO_FLAG(on_pause, 0, "FILE", "at most 40 commands", "G-code to run after the job was paused.")
+FIO_FLAG(on_cancel, 0, "FILE", "at most 40 commands", "G-code to run after the job was cancelled.")
 FIO_FLAG(heaters_off, 0, "", "", "Switch the heaters off at the end, even if the job does not.")
 FIO_FLAG(yes, 'y', "", "", "Answer yes to what would be asked: begin anew over a journal.")
 FIO_FLAG_GROUP("Other work")

@@ -5,35 +5,46 @@
 #include <string.h>
 
 #include "protocol/encode.h"
+#include "protocol/words.h"
 #include "signals.h"
+#include "utf8.h"
 
 enum { SIGNALS_EVERY = 4096 }; /* commands */
 
-/* What would spoil the numbers of the lines, or the job itself, wherever it stands in it. */
-static const struct {
-    const char *command, *why;
-} forbidden[] = {
-    {"M28", "it would write the rest to the printer's card"},
-    {"M29", "it belongs to writing on the printer's card"},
-    {"M110", "the numbers of the lines are the host's"},
-    {"M112", "it is the emergency stop"},
-    {"M410", "it would throw away moves before it"},
-};
-
-static bool is_command(const char *name, const fio_source_command *command) {
-    size_t length = strlen(name);
-    return command->length >= length && !memcmp(command->text, name, length) &&
-           !(command->text[length] >= '0' && command->text[length] <= '9') &&
-           command->text[length] != '.';
+static bool is_of(const fio_source_command *command, int64_t wanted) {
+    fio_words words = {command->text + 1, command->text + command->length};
+    int64_t code;
+    fio_words_blanks(&words);
+    return fio_words_integer(&words, &code) && code == wanted;
 }
 
-/* A line that Marlin would cut at its 95 bytes, or that is forbidden. */
+/* What would spoil the numbers of the lines, or the job itself, wherever it stands in it; NULL if
+ * there is nothing wrong. */
+static const char *what_is_wrong(const fio_source_command *command) {
+    unsigned traits = fio_command_traits(command->text, command->length);
+    if (traits & FIO_COMMAND_NUMBERS)
+        return "the numbers of the lines are the host's";
+    if (traits & FIO_COMMAND_SD_WRITE)
+        return "it belongs to writing on the printer's card, which --upload does";
+    if (traits & FIO_COMMAND_RESETS)
+        return "it restarts the printer";
+    if ((traits & FIO_COMMAND_STOPS) && is_of(command, 112))
+        return "it is the emergency stop";
+    if ((traits & FIO_COMMAND_STOPS) && is_of(command, 410))
+        return "it throws away the moves before it";
+    return NULL;
+}
+
+/* Or a line that Marlin would cut at its 95 bytes. */
 static fio_status check_command(const fio_job *job, const fio_source_command *command) {
-    char wire[FIO_WIRE_LINE_MOST + 1];
-    for (size_t i = 0; i < sizeof forbidden / sizeof *forbidden; i++)
-        if (is_command(forbidden[i].command, command))
-            return fio_fail(FIO_FAULTY, "%s:%" PRId64 ": a job must not hold %s: %s", job->name,
-                            command->line, forbidden[i].command, forbidden[i].why);
+    char wire[FIO_WIRE_LINE_MOST + 1], text[128];
+    const char *wrong = what_is_wrong(command);
+    if (wrong) {
+        fio_text visible = fio_text_in(text, sizeof text);
+        fio_utf8_visible(&visible, command->text, command->length < 40 ? command->length : 40);
+        return fio_fail(FIO_FAULTY, "%s:%" PRId64 ": a job must not hold %s: %s", job->name,
+                        command->line, text, wrong);
+    }
     if (command->length > 64 &&
         fio_encode_line(wire, command->index + 1, command->text, command->length, 95) == 0)
         return fio_fail(FIO_FAULTY,
@@ -68,13 +79,9 @@ static fio_source_result next(fio_job *job, fio_source_command *command) {
     if (job->peeked) {
         job->peeked = false;
         *command = job->first;
-        if (command->index >= job->skip)
-            return FIO_SOURCE_COMMAND;
+        return FIO_SOURCE_COMMAND;
     }
-    fio_source_result result;
-    do
-        result = fio_source_next(job->source, command);
-    while (result == FIO_SOURCE_COMMAND && command->index < job->skip);
+    fio_source_result result = fio_source_next(job->source, command);
     job->waits = result == FIO_SOURCE_LATER;
     if (result == FIO_SOURCE_FAILED)
         job->failure = FIO_UNREADABLE;
@@ -129,6 +136,12 @@ fio_source_result fio_job_next(void *context, fio_source_command *command) {
     return result;
 }
 
+void fio_job_look(fio_job *job) {
+    struct pollfd input = {fio_source_descriptor(job->source), POLLIN, 0};
+    if (job->waits && poll(&input, 1, 0) == 1)
+        job->waits = false;
+}
+
 int64_t fio_job_line_of(const fio_job *job, int64_t index) {
     if (index < job->given)
         return job->lines[index % FIO_JOB_LINES];
@@ -137,10 +150,7 @@ int64_t fio_job_line_of(const fio_job *job, int64_t index) {
 
 fio_status fio_job_seek(void *context, int64_t index) {
     fio_job *job = context;
-    if (!job->is_pipe)
-        return fio_source_seek(job->source, index);
-    job->skip = index; /* only ever forward: a pipe is resumed before its first command is given */
-    return FIO_OK;
+    return fio_source_seek(job->source, index);
 }
 
 fio_status fio_job_find_line(fio_job *job, int64_t line, fio_stream_resume *resume) {

@@ -15,7 +15,6 @@ typedef struct fio_job {
     bool waits;         /* there was nothing to read the last time: watch the descriptor */
     bool peeked;        /* `first` has been read and not yet been given out */
     fio_status failure; /* why next() gave FIO_SOURCE_FAILED */
-    int64_t skip;       /* commands below this index are passed over */
     fio_source_command first;
     int64_t lines[FIO_JOB_LINES]; /* of the last commands given out, by their index */
     int64_t given;                /* index behind the last one; 0: none */
@@ -27,13 +26,16 @@ typedef struct fio_job {
 fio_status fio_job_open(fio_job *job, const char *path) FIO_MUST_CHECK;
 void fio_job_close(fio_job *job);
 
-/* For the streamer. `context` is the job. */
+/* For the streamer. `context` is the job. A pipe can't seek. */
 fio_source_result fio_job_next(void *context, fio_source_command *command);
 fio_status fio_job_seek(void *context, int64_t index);
 
 /* Where to go on to begin with this line: FIO_USAGE if there is no command from there on. Leaves
  * the job at its beginning. Not for pipes. */
 fio_status fio_job_find_line(fio_job *job, int64_t line, fio_stream_resume *resume) FIO_MUST_CHECK;
+
+/* Stop watching a pipe that has become readable: the streamer will come for it in its own time. */
+void fio_job_look(fio_job *job);
 
 /* The line of a command that was given out not long ago, or of the one behind the last. */
 int64_t fio_job_line_of(const fio_job *job, int64_t index);

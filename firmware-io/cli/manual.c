@@ -97,9 +97,10 @@ static int print_words(const char *text, int column, int indent, int width) {
 static void print_entry(const char *name, const char *help, const char *range) {
     enum { INDENT = 31, WIDTH = 100 };
     char bracketed[128];
-    printf("  %-28s ", name);
     if (strlen(name) > 28)
-        printf("\n%*s", INDENT, "");
+        printf("  %s\n%*s", name, INDENT, "");
+    else
+        printf("  %-28s ", name);
     int column = print_words(help, INDENT, INDENT, WIDTH);
     snprintf(bracketed, sizeof bracketed, "(%s)", range);
     if (*range)

@@ -103,7 +103,8 @@ static void warn(fio_narrator *narrator, const char *text, size_t size) {
     char bytes[700];
     fio_text visible = fio_text_in(bytes, sizeof bytes);
     fio_utf8_visible(&visible, text, size);
-    fio_screen_say(&narrator->screen, "%s", bytes);
+    if (!narrator->answers)
+        fio_screen_say(&narrator->screen, "%s", bytes);
     fio_dialogue_add(&narrator->dialogue, narrator->now, '#', text, size);
     simple(narrator, "warning", "text", text, size);
 }
@@ -147,7 +148,50 @@ static bool is_routine(const fio_answer *answer) {
            answer->kind == FIO_ANSWER_WAIT;
 }
 
-static void answer(fio_narrator *narrator, const fio_answer *said) {
+/* isoprint's own M118 with seven hexadecimal digits: "N12 M118 0123abc*99", "N12 M0118 …". */
+static bool read_token(char token[8], const char *text, size_t length) {
+    const char *end = text + length;
+    const char *word = text + (length > 0 && *text == 'N' ? strcspn(text, " ") : 0);
+    word += word < end && *word == ' ';
+    size_t name = !strncmp(word, "M118 ", 5) ? 5 : !strncmp(word, "M0118 ", 6) ? 6 : 0;
+    if (name == 0 || strspn(word + name, "0123456789abcdef") != 7)
+        return false;
+    memcpy(token, word + name, 7);
+    token[7] = 0;
+    return true;
+}
+
+static void sent(fio_narrator *narrator, const fio_stream_event *event) {
+    char text[FIO_ANSWER_MOST + 1];
+    fio_text copy = fio_text_in(text, sizeof text);
+    fio_text_bytes(&copy, event->text, event->length);
+    fio_dialogue_add(&narrator->dialogue, event->time, '>', event->text, event->length);
+    if (!narrator->answers || narrator->under_way == 64)
+        return;
+    bool own = read_token(narrator->token, text, copy.length);
+    if (own || event->state == FIO_STREAM_GREETING)
+        narrator->own |= UINT64_C(1) << narrator->under_way;
+    narrator->under_way++;
+}
+
+/* Something that somebody at a console did not ask for. */
+static bool is_own(fio_narrator *narrator, const fio_stream_event *event) {
+    const fio_answer *said = event->answer;
+    bool greeting = event->state == FIO_STREAM_GREETING;
+    if (said->kind == FIO_ANSWER_START)
+        narrator->own = narrator->under_way = 0;
+    if (said->kind == FIO_ANSWER_TEMPERATURES)
+        return greeting || !narrator->reports;
+    if (said->kind != FIO_ANSWER_OK)
+        return greeting || (*narrator->token && strstr(said->text, narrator->token));
+    bool own = narrator->under_way > 0 && (narrator->own & 1);
+    narrator->under_way -= narrator->under_way > 0;
+    narrator->own >>= 1;
+    return greeting || own || (said->has_temperatures && !narrator->temperatures);
+}
+
+static void answer(fio_narrator *narrator, const fio_stream_event *event) {
+    const fio_answer *said = event->answer;
     fio_dialogue_add(&narrator->dialogue, narrator->now, '<', said->text, said->length);
     bool waits = said->kind == FIO_ANSWER_BUSY && said->busy != FIO_BUSY_PROCESSING;
     if (waits && !narrator->paused_for_user)
@@ -156,12 +200,14 @@ static void answer(fio_narrator *narrator, const fio_answer *said) {
         narrator->paused_for_user = waits;
     if (is_complaint(said)) {
         narrator->complaints++;
-        if (!narrator->answers)
+        if (!narrator->answers && said->kind != FIO_ANSWER_ERROR) /* that comes as a warning, too */
             say_of_printer(narrator, "the printer says", said->text, said->length);
     }
+    bool hidden = narrator->answers ? is_own(narrator, event) : is_routine(said);
+    if (hidden)
+        return;
     if (narrator->use_json) {
-        if (narrator->answers || !is_routine(said))
-            simple(narrator, "answer", "text", said->text, said->length);
+        simple(narrator, "answer", "text", said->text, said->length);
     } else if (narrator->answers) {
         char bytes[FIO_ANSWER_MOST * 2];
         fio_text visible = fio_text_in(bytes, sizeof bytes);
@@ -193,12 +239,13 @@ void fio_narrator_event(fio_narrator *narrator, const fio_stream_event *event) {
             firmware(narrator, event->firmware);
         break;
     case FIO_STREAM_ANSWER:
-        answer(narrator, event->answer);
+        answer(narrator, event);
         break;
     case FIO_STREAM_SENT:
-        fio_dialogue_add(&narrator->dialogue, event->time, '>', event->text, event->length);
+        sent(narrator, event);
         break;
-    case FIO_STREAM_RESEND:
+    case FIO_STREAM_RESEND: /* the lines under way are lost, and an ok follows */
+        narrator->own = narrator->under_way = 1;
         if (begin(narrator, "resend")) {
             fio_json_integer(&narrator->json, "number", event->number);
             fio_narrator_object(narrator);

@@ -7,7 +7,7 @@
 #include "resumption.h"
 #include "terminal.h"
 
-enum { SCRIPT_SIZE = 16384 };
+enum { SCRIPT_COMMANDS = 40, SCRIPT_SIZE = SCRIPT_COMMANDS * FIO_WIRE_LINE_MOST };
 
 /* All that one job needs; one at a time, and too much for a stack. */
 typedef struct running_job {
@@ -39,11 +39,13 @@ static fio_status read_script(char *text, const char *path, const char **command
     *commands = NULL;
     if (!path)
         return FIO_OK;
+    if (!strcmp(path, "-"))
+        return fio_fail(FIO_USAGE, "--on-pause and --on-cancel take files, not standard input");
     fio_status status = fio_source_open(&source, path);
     while (status == FIO_OK && (result = fio_source_next(source, &command)) == FIO_SOURCE_COMMAND) {
-        if (all.length + command.length + 1 >= SCRIPT_SIZE)
-            status =
-                fio_fail(FIO_USAGE, "%s: more than %d bytes of commands", path, SCRIPT_SIZE - 1024);
+        if (command.index == SCRIPT_COMMANDS || command.length > 90)
+            status = fio_fail(FIO_USAGE, "%s:%lld: at most %d commands of 90 bytes are taken", path,
+                              (long long)command.line, SCRIPT_COMMANDS);
         fio_text_bytes(&all, command.text, command.length);
         fio_text_string(&all, "\n");
     }
@@ -56,7 +58,7 @@ static fio_status read_script(char *text, const char *path, const char **command
 
 static fio_status set_options(fio_stream_options *options, const fio_arguments *arguments) {
     *options = fio_stream_options_defaults();
-    options->rate = arguments->baud;
+    options->rate = arguments->baud > 0 ? arguments->baud : options->rate;
     options->no_greeting = arguments->no_reset;
     options->window_lines = arguments->window_lines;
     options->window_bytes = arguments->window_bytes;
@@ -104,7 +106,8 @@ static fio_status prepare(running_job *running) {
 static fio_status stream(running_job *running) {
     fio_control *control = running->control;
     fio_resumption *resumption = &running->resumption;
-    fio_stream_source source = {fio_job_next, fio_job_seek, &running->job};
+    fio_stream_source source = {fio_job_next, running->job.is_pipe ? NULL : fio_job_seek,
+                                &running->job};
     fio_stream_listener listener = {on_job_event, running};
     fio_status status =
         fio_streamer_create(&running->streamer, &running->options, &source,
@@ -223,7 +226,6 @@ static fio_status converse(const fio_arguments *arguments, fio_transport *transp
         status = fio_streamer_create(&streamer, &options, NULL, NULL, &listener);
     if (status != FIO_OK)
         return status;
-    options.report_seconds = 0;
     fio_console_open(&console, sends ? arguments->send : NULL, arguments->send_count);
     control->streamer = streamer;
     control->console = &console;
