@@ -101,16 +101,25 @@ static void executed(void *context, const fio_executed *entry) {
     if (record->verbose)
         printf("%10.4f ** %s (N%lld, %.4f s)\n", entry->start, entry->text,
                (long long)entry->number, entry->duration);
-    bool known = strchr("GMT", entry->text[0]); /* what isn't, a firmware only complains about */
+    bool known = strchr("GM", entry->text[0]); /* what isn't, a firmware only complains about */
     if (!known || !key || key == entry->text || key[-1] != ' ') {
         record->foreign++;
         return;
     }
     char *end;
     long index = strtol(key + 1, &end, 10);
-    if (*end || index < 0 || index >= record->job->count ||
-        !same(entry->text, record->job->commands[index])) {
+    bool right = !*end && index >= 0 && index < record->job->count &&
+                 same(entry->text, record->job->commands[index]);
+    if (entry->number < 0) { /* "N5 G1" that became "G5 G1" is no command, either */
+        if (right)
+            note_wrong(record, "executed without its number", entry->text);
+        return;
+    }
+    if (!right) {
         note_wrong(record, "not a command of the job", entry->text);
+        record->altered++;
+        if (record->next >= 0 && record->number[record->next] == entry->number)
+            record->executed[record->next++]++; /* it was, once */
         return;
     }
     bool move = entry->text[0] == 'G' && (entry->text[1] == '0' || entry->text[1] == '1');

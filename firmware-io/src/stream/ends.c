@@ -132,7 +132,10 @@ void fio_end(fio_streamer *streamer, fio_status status, bool renumber, const cha
     streamer->ending = true;
     streamer->finishing = false;
     streamer->has_pending = false;
-    queue_end(streamer, !again);
+    if (renumber)
+        fio_queue_clear(streamer);
+    else
+        queue_end(streamer, !again);
     if (!again) {
         break_waiting(streamer);
         streamer->end_started = streamer->now;
@@ -141,6 +144,10 @@ void fio_end(fio_streamer *streamer, fio_status status, bool renumber, const cha
     streamer->opened_file = false;
     if (renumber)
         fio_handshake_number(streamer);
+}
+
+void fio_end_again(fio_streamer *streamer) {
+    queue_end(streamer, false);
 }
 
 void fio_streamer_cancel(fio_streamer *streamer, double now) {

@@ -12,7 +12,7 @@
 #define ANSWER_SECONDS 1.0
 #define GREETING_SECONDS 20.0
 #define UPLOAD_SECONDS 8.0
-enum { ATTEMPTS_MOST = 10, LAST_ATTEMPTS = 5, NAME_ATTEMPTS = 3 };
+enum { ATTEMPTS_MOST = 10, LAST_ATTEMPTS = 5, OBEYED_LEAST = 3, NAME_ATTEMPTS = 3 };
 
 static void go_to(fio_streamer *streamer, fio_greeting greeting, double seconds) {
     streamer->greeting = greeting;
@@ -249,8 +249,8 @@ void fio_handshake_step(fio_streamer *streamer) {
 }
 
 static void repeat_last(fio_streamer *streamer) {
-    if (++streamer->attempts > LAST_ATTEMPTS && streamer->pulse.heard > streamer->started) {
-        go_on_anew(streamer); /* it speaks, but never of numbers */
+    if (++streamer->attempts > LAST_ATTEMPTS && streamer->obeyed >= OBEYED_LEAST) {
+        go_on_anew(streamer); /* it does what no firmware that counts lines would do */
         return;
     }
     go_to(streamer, FIO_GREETING_LAST, ANSWER_SECONDS);
@@ -388,9 +388,11 @@ bool fio_handshake_halted(fio_streamer *streamer) {
     return streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NAME;
 }
 
-bool fio_handshake_ok(fio_streamer *streamer) {
-    if (streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NUMBER)
+bool fio_handshake_ok(fio_streamer *streamer, const fio_answer *answer) {
+    if (streamer->state == FIO_STREAM_GREETING && streamer->greeting < FIO_GREETING_NUMBER) {
+        streamer->obeyed += streamer->greeting == FIO_GREETING_LAST && answer->has_temperatures;
         return true;
+    }
     if (!streamer->handshaking)
         return false;
     if (streamer->raw_length > 0 || streamer->out_done < streamer->out_length)
@@ -400,6 +402,8 @@ bool fio_handshake_ok(fio_streamer *streamer) {
     if (streamer->state == FIO_STREAM_GREETING) {
         streamer->attempts = 0;
         ask_name(streamer);
+    } else if (streamer->ending) {
+        fio_end_again(streamer);
     }
     return true;
 }

@@ -11,8 +11,9 @@
 #include "stream/state.h"
 
 #define RETRY_SECONDS 0.3   /* its ok came, its echo did not */
+#define ALONE_SECONDS 0.2   /* of silence before it */
 #define DOUBLE_SECONDS 0.05 /* an answer so soon after another is its double */
-enum { ECHOES_MISSED_MOST = 4, TOKEN = 7 };
+enum { ECHOES_MISSED_MOST = 12, TOKEN = 7 };
 
 /* Seven hexadecimal digits of the number, mixed so that no two damaged bits make one of another. */
 static void token_of(int64_t number, char token[TOKEN + 1]) {
@@ -41,6 +42,8 @@ void fio_marker_sent(fio_streamer *streamer) {
     streamer->marker_time = streamer->now;
     streamer->marker_told = false;
     streamer->probe = false;
+    streamer->marker_alone = fio_window_lines(streamer) <= 1 &&
+                             streamer->now - streamer->pulse.answered >= ALONE_SECONDS;
 }
 
 static bool unsure(const fio_streamer *streamer) {
@@ -97,16 +100,17 @@ bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
     return false;
 }
 
-/* The answer of an M105 may have been lost: this one counts for the first that has none. */
+/* The answer of an M105 may have been lost: this one counts for the first that has none, unless it
+ * was asked for when nothing was left to come. */
 static void credit_oldest(fio_streamer *streamer) {
-    for (int64_t n = streamer->executed + 1; n < streamer->next; n++) {
+    bool alone = streamer->marker_alone && streamer->marker > streamer->executed;
+    for (int64_t n = alone ? streamer->marker : streamer->executed + 1; n < streamer->next; n++) {
         const fio_sent_line *line = fio_history_line(streamer, n);
         if (!line || !line->marker || !(line->time <= streamer->now))
             continue;
         fio_history_execute(streamer, n);
         if (n > streamer->answered)
             fio_window_set(streamer, n);
-        streamer->echoes_missed = 0;
         return;
     }
 }

@@ -5,7 +5,7 @@
 
 #define BEATS_MISSED 3.0 /* heartbeats that may be lost or late */
 #define BEAT_SLACK 1.5   /* s */
-enum { POLL_BYTES = 24 };
+enum { POLL_BYTES = 24, STALLS_LEAST = 3 };
 #define NO_BUSY_SECONDS 60.0 /* reports come, but nothing is executed and nothing is busy */
 
 void fio_pulse_hear(fio_streamer *streamer, const fio_answer *answer) {
@@ -90,6 +90,9 @@ static double silent_at(const fio_streamer *streamer) {
                       : streamer->pulse.heard;
     if (!isfinite(owed))
         owed = streamer->pulse.heard; /* not even written: the link holds us back */
+    if (fio_window_lines(streamer) > 0 && streamer->recovery.stalls < STALLS_LEAST &&
+        isfinite(fio_recovery_deadline(streamer)))
+        return INFINITY; /* what was asked may have been lost: it is asked again first */
     return fmax(streamer->pulse.heard, owed) + fio_pulse_silence(streamer);
 }
 

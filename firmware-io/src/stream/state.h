@@ -130,8 +130,9 @@ struct fio_streamer {
     /* The marker: a command whose answer proves that all before it was executed. */
     int64_t marker, marker_lines; /* the newest; lines behind it */
     double marker_time, temperatures_told;
-    bool marker_told; /* it had its ok */
-    bool probe;       /* one is wanted because an answer is overdue */
+    bool marker_told;  /* it had its ok */
+    bool marker_alone; /* nothing else was under way when it was sent */
+    bool probe;        /* one is wanted because an answer is overdue */
     int echoes_missed;
     bool echoes, echo_proved; /* M118 is known */
     int64_t await;            /* its execution brings the next step; -1: nothing is waited for */
@@ -153,7 +154,7 @@ struct fio_streamer {
 
     fio_greeting greeting;
     double greeting_until, step_until;
-    int attempts;
+    int attempts, obeyed;
     bool resume_saved; /* in the report, before the numbers were set anew */
     bool started_anew; /* "start" was heard, or the firmware counts from elsewhere */
     bool rubbish, halted;
@@ -242,7 +243,8 @@ void fio_handshake_number(fio_streamer *streamer); /* M110 */
 void fio_handshake_tick(fio_streamer *streamer);
 double fio_handshake_deadline(const fio_streamer *streamer);
 void fio_handshake_hear(fio_streamer *streamer, const fio_answer *answer);
-bool fio_handshake_ok(fio_streamer *streamer); /* true: the ok was its own */
+bool fio_handshake_ok(fio_streamer *streamer,
+                      const fio_answer *answer); /* true: the ok was its own */
 bool fio_handshake_resend(fio_streamer *streamer, int64_t number);
 bool fio_handshake_halted(fio_streamer *streamer); /* true: that may have been long ago */
 void fio_handshake_step(fio_streamer *streamer);
@@ -260,6 +262,7 @@ void fio_end_now(fio_streamer *streamer, fio_status status, const char *format, 
     FIO_PRINTF(3, 4);
 void fio_end_finish(fio_streamer *streamer); /* the job has been sent */
 void fio_end_step(fio_streamer *streamer);
+void fio_end_again(fio_streamer *streamer); /* lines count anew: what was said is said again */
 void fio_end_halted(fio_streamer *streamer, const fio_answer *answer);
 void fio_end_tick(fio_streamer *streamer);
 double fio_end_deadline(const fio_streamer *streamer);

@@ -9,6 +9,9 @@
 #include "base/memory.h"
 #include "stream/state.h"
 
+#define DAMAGED_SECONDS 0.2 /* an answer was unreadable: it may be asked for so soon */
+enum { DAMAGED_MOST = 6 };
+
 fio_stream_options fio_stream_options_defaults(void) {
     return (fio_stream_options){.rate = 115200, .report_seconds = 2, .lift = 2, .retract = 2};
 }
@@ -147,6 +150,13 @@ static void hear_start(fio_streamer *streamer) {
     fio_end(streamer, FIO_LINK_LOST, true, "the printer was reset in the middle of the job");
 }
 
+/* Damaged: if lines wait for their answers, one of those may have been it. */
+static void hear_damaged(fio_streamer *streamer) {
+    bool is_long = fio_pulse_patience(streamer) > FIO_PLAIN_SECONDS;
+    if (fio_window_lines(streamer) > 0 && streamer->recovery.stalls < DAMAGED_MOST && !is_long)
+        streamer->recovery.stall = fmin(streamer->recovery.stall, DAMAGED_SECONDS);
+}
+
 static void hear_error(fio_streamer *streamer, const fio_answer *answer) {
     if (!streamer->plain && answer->line >= 0) {
         streamer->recovery.last_line = answer->line;
@@ -154,18 +164,22 @@ static void hear_error(fio_streamer *streamer, const fio_answer *answer) {
         return;
     }
     fio_streamer_say(streamer, FIO_STREAM_WARNING, answer->text, -1);
+    hear_damaged(streamer);
     if (streamer->plain && streamer->firmware.kind == FIO_FIRMWARE_GRBL)
         fio_window_answer(streamer, answer); /* instead of an ok */
 }
 
 static void hear_ok(fio_streamer *streamer, const fio_answer *answer) {
     double since = streamer->now - streamer->pulse.answered;
-    streamer->pulse.pace = fmax(0.75 * streamer->pulse.pace, fmin(since, FIO_STALL_PACED));
+    if (streamer->recovery.stalls == 0) /* else it is our own waiting that is measured */
+        streamer->pulse.pace = fmax(0.75 * streamer->pulse.pace, fmin(since, FIO_STALL_PACED));
+    else
+        streamer->pulse.pace *= 0.75;
     streamer->pulse.answered = streamer->now;
     streamer->rubbish = false;
     if (answer->planner_free >= 0)
         fio_firmware_learn(&streamer->firmware, answer);
-    if (fio_recovery_take_ok(streamer) || fio_handshake_ok(streamer))
+    if (fio_recovery_take_ok(streamer) || fio_handshake_ok(streamer, answer))
         return;
     fio_window_answer(streamer, answer);
 }
@@ -177,6 +191,8 @@ static void hear_other(fio_streamer *streamer, const fio_answer *answer) {
         fio_window_set(streamer, streamer->cursor - 1);
         fio_history_execute(streamer, streamer->answered);
     }
+    if (answer->kind == FIO_ANSWER_OTHER)
+        hear_damaged(streamer);
     for (size_t i = 0; i < answer->length; i++)
         streamer->rubbish = streamer->rubbish || (unsigned char)answer->text[i] >= 127;
 }
