@@ -9,7 +9,7 @@ void fio_console_open(fio_console *console, const char *const *commands, int cou
     console->count = count;
     console->at = 0;
     console->ended = console->refused = console->skipping = console->pending = false;
-    console->temperatures = false;
+    console->temperatures = console->reports = false;
     console->first = console->length = 0;
 }
 
@@ -111,9 +111,10 @@ fio_status fio_console_feed(fio_console *console, fio_streamer *streamer, double
         }
         if (console->pending && fio_streamer_command(streamer, now, console->line) != FIO_OK)
             return FIO_OK; /* later */
-        if (console->pending &&
-            (!strncmp(console->line, "M105", 4) || !strncmp(console->line, "M155", 4)))
-            console->temperatures = true;
+        if (console->pending) {
+            console->temperatures |= !strncmp(console->line, "M105", 4);
+            console->reports |= !strncmp(console->line, "M155", 4);
+        }
         console->pending = false;
     }
     if (console->ended && console->length == 0)

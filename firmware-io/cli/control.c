@@ -153,8 +153,10 @@ static void woken(void *context, double now, const struct pollfd *polls, int cou
     if (control->console && listens(control) && !control->cancelled &&
         fio_console_feed(control->console, control->streamer, now) != FIO_OK)
         fio_screen_say(&control->narrator->screen, "%s", fio_error_message());
-    if (control->console && control->console->temperatures)
-        control->narrator->temperatures = true;
+    if (control->console) {
+        control->narrator->temperatures = control->console->temperatures;
+        control->narrator->reports = control->console->reports;
+    }
     fio_narrator_flush(control->narrator);
     fio_narrator_update(control->narrator, now, fio_streamer_report(control->streamer));
 }

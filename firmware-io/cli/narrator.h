@@ -26,11 +26,11 @@ typedef struct fio_narrator {
     int tenth;            /* the last 10 % told in a pipe */
     /* Of a console: which lines under way are isoprint's own, so that their answers are not shown.
      */
-    uint64_t own;       /* bit i: the i-th line that is not answered yet */
-    int under_way;      /* lines, at most 64 */
-    char token[8];      /* what the last one of our own lets the printer echo */
-    bool temperatures;  /* somebody has asked for them */
-    int64_t complaints; /* answers that say that a command was not done */
+    uint64_t own;               /* bit i: the i-th line that is not answered yet */
+    int under_way;              /* lines, at most 64 */
+    char token[8];              /* what the last one of our own lets the printer echo */
+    bool temperatures, reports; /* somebody has asked for them by M105, by M155 */
+    int64_t complaints;         /* answers that say that a command was not done */
 } fio_narrator;
 
 void fio_narrator_open(fio_narrator *narrator, const fio_arguments *arguments);
