@@ -27,9 +27,9 @@ static inline fio_machine *rig_machine(bool resets) {
 /* Let it look at what happened, as its loop would. */
 static inline void rig_turn(fio_standin *standin) {
     struct pollfd polls[FIO_STANDIN_POLLS];
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0, quiet = 0; i < 50 && quiet < 3; i++) {
         int count = standin->type->polls(standin, polls, FIO_STANDIN_POLLS);
-        poll(polls, (nfds_t)count, 1);
+        quiet = poll(polls, (nfds_t)count, 1) > 0 ? 0 : quiet + 1;
         CHECK_EQUAL(FIO_OK, fio_standin_turn(standin, polls, count));
     }
 }
