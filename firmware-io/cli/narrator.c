@@ -218,8 +218,10 @@ static void answer(fio_narrator *narrator, const fio_stream_event *event) {
 }
 
 static void state(fio_narrator *narrator, fio_stream_state now) {
-    simple(narrator, "state", "state", fio_progress_state_name(now),
-           strlen(fio_progress_state_name(now)));
+    const char *name = fio_progress_state_name(now);
+    if (narrator->answers && now == FIO_STREAM_RUNNING)
+        name = "ready";
+    simple(narrator, "state", "state", name, strlen(name));
     if (narrator->answers)
         return;
     if (now == FIO_STREAM_PAUSED)

@@ -7,17 +7,20 @@
 #include "resumption.h"
 #include "terminal.h"
 
+enum { WITHOUT_LINES_SECONDS = 6 };
+
 enum { SCRIPT_COMMANDS = 40, SCRIPT_SIZE = SCRIPT_COMMANDS * FIO_WIRE_LINE_MOST };
 
 /* All that one job needs; one at a time, and too much for a stack. */
 typedef struct running_job {
-    const fio_arguments *arguments;
+    fio_arguments arguments;
     fio_control *control;
     fio_job job;
     fio_resumption resumption;
     fio_transport *transport;
     fio_streamer *streamer;
     fio_stream_options options;
+    bool patient; /* a printer that says nothing may do so once DTR is raised */
     char on_pause[SCRIPT_SIZE], on_cancel[SCRIPT_SIZE];
 } running_job;
 
@@ -82,7 +85,7 @@ static void on_console_event(void *context, const fio_stream_event *event) {
 
 /* Everything that can be wrong without a printer, before there is one. */
 static fio_status prepare(running_job *running) {
-    const fio_arguments *arguments = running->arguments;
+    const fio_arguments *arguments = &running->arguments;
     fio_resumption *resumption = &running->resumption;
     fio_stream_options *options = &running->options;
     fio_status status = set_options(options, arguments);
@@ -94,6 +97,12 @@ static fio_status prepare(running_job *running) {
         status = fio_resumption_read(resumption, arguments);
     if (status != FIO_OK)
         return status;
+    if (resumption->resumes) {
+        /* A printer that was not reset knows how far it came, and stands where it stood. */
+        running->patient = !running->arguments.no_reset;
+        running->arguments.no_reset = options->no_greeting = true;
+        options->greeting_seconds = running->patient ? WITHOUT_LINES_SECONDS : 0;
+    }
     resumption->port = port_of(arguments, resumption->port);
     status = fio_job_open(&running->job, resumption->file);
     if (status == FIO_OK)
@@ -117,9 +126,27 @@ static fio_status stream(running_job *running) {
     control->streamer = running->streamer;
     control->job = &running->job;
     control->narrator->has_job = true;
-    fio_terminal_keys(running->job.is_pipe);
     fio_session_hooks hooks = fio_control_hooks(control);
-    status = fio_session_run(running->transport, running->streamer, &hooks);
+    return fio_session_run(running->transport, running->streamer, &hooks);
+}
+
+/* Boards with USB of their own may be mute until DTR is raised, which others take for a reset: to
+ * go on with a job it is tried without at first. */
+static fio_status stream_with_or_without_lines(running_job *running) {
+    fio_transport *transport = running->transport;
+    fio_terminal_keys(running->job.is_pipe);
+    fio_status status = stream(running);
+    if (status == FIO_NO_PRINTER && running->patient && transport->type->set_lines &&
+        !running->control->cancelled && !running->job.is_pipe &&
+        transport->type->set_lines(transport, true, true) == FIO_OK) {
+        fio_streamer_free(running->streamer);
+        running->streamer = NULL;
+        running->options.no_greeting = false;
+        running->options.greeting_seconds = 0;
+        status = fio_job_seek(&running->job, 0);
+        if (status == FIO_OK)
+            status = stream(running);
+    }
     fio_terminal_restore();
     bool refused = status == FIO_UNREADABLE && running->job.failure != FIO_OK;
     return refused ? running->job.failure : status;
@@ -134,8 +161,8 @@ static fio_status start_from_card(running_job *running) {
     fio_stream_listener listener = {on_job_event, running};
     fio_streamer *streamer;
     fio_stream_options options;
-    snprintf(select, sizeof select, "M23 %s", running->arguments->upload);
-    fio_status status = set_options(&options, running->arguments);
+    snprintf(select, sizeof select, "M23 %s", running->arguments.upload);
+    fio_status status = set_options(&options, &running->arguments);
     options.upload = NULL;
     options.no_greeting = true;
     if (status == FIO_OK)
@@ -152,7 +179,7 @@ static fio_status start_from_card(running_job *running) {
     fio_streamer_free(streamer);
     if (status == FIO_OK && control->narrator->complaints > complaints)
         status = fio_fail(FIO_FAULTY, "the printer did not start %s from its card",
-                          running->arguments->upload);
+                          running->arguments.upload);
     return status;
 }
 
@@ -162,9 +189,9 @@ static fio_status end(running_job *running, fio_status status) {
     fio_control *control = running->control;
     const fio_stream_report *report = fio_streamer_report(running->streamer);
     snprintf(message, sizeof message, "%s", fio_error_message());
-    fio_resumption_end(&running->resumption, running->arguments, status, report, &running->job,
+    fio_resumption_end(&running->resumption, &running->arguments, status, report, &running->job,
                        command, sizeof command);
-    if (status == FIO_OK && running->arguments->start)
+    if (status == FIO_OK && running->arguments.start)
         status = start_from_card(running);
     else if (status != FIO_OK)
         status = fio_fail(status, "%s", message);
@@ -178,7 +205,7 @@ static fio_status end(running_job *running, fio_status status) {
 }
 
 static fio_status run(running_job *running) {
-    const fio_arguments *arguments = running->arguments;
+    const fio_arguments *arguments = &running->arguments;
     fio_control *control = running->control;
     fio_narrator *narrator = control->narrator;
     fio_resumption *resumption = &running->resumption;
@@ -192,13 +219,13 @@ static fio_status run(running_job *running) {
         return status;
     fio_narrator_start(narrator, fio_transport_now(running->transport), resumption->port,
                        fio_source_whole(running->job.source), running->job.name);
-    status = stream(running);
+    status = stream_with_or_without_lines(running);
     return running->streamer ? end(running, status) : status;
 }
 
 fio_status fio_print_run(const fio_arguments *arguments, fio_control *control) {
     static running_job running;
-    running.arguments = arguments;
+    running.arguments = *arguments;
     running.control = control;
     fio_status status = prepare(&running);
     if (status == FIO_OK)
