@@ -88,6 +88,12 @@ static void note_wrong(print_record *record, const char *what, const char *text)
                  text, record->next);
 }
 
+/* The right line, but not what it says: damage that its checksum does not tell. */
+static void note_altered(print_record *record, const char *text) {
+    note_wrong(record, "altered", text);
+    record->executed[record->next++]++;
+}
+
 /* "M0109" is what protects an M109 from becoming an M108: the same command. */
 static bool same(const char *text, const char *command) {
     size_t zeros = strspn(text + (text[0] != 0), "0");
@@ -102,8 +108,11 @@ static void executed(void *context, const fio_executed *entry) {
         printf("%10.4f ** %s (N%lld, %.4f s)\n", entry->start, entry->text,
                (long long)entry->number, entry->duration);
     bool known = strchr("GM", entry->text[0]); /* what isn't, a firmware only complains about */
+    bool turns = record->next >= 0 && entry->number >= 0 &&
+                 record->number[record->next] == entry->number; /* by its number */
     if (!known || !key || key == entry->text || key[-1] != ' ') {
-        record->foreign++;
+        if (turns)
+            note_altered(record, entry->text);
         return;
     }
     char *end;
@@ -116,25 +125,27 @@ static void executed(void *context, const fio_executed *entry) {
         return;
     }
     if (!right) {
-        note_wrong(record, "not a command of the job", entry->text);
-        record->altered++;
-        if (record->next >= 0 && record->number[record->next] == entry->number)
-            record->executed[record->next++]++; /* it was, once */
+        if (turns)
+            note_altered(record, entry->text);
+        else
+            note_wrong(record, "not a command of the job", entry->text);
         return;
     }
     bool move = entry->text[0] == 'G' && (entry->text[1] == '0' || entry->text[1] == '1');
-    if (move && entry->duration == 0) { /* it was in the planner at a halt or a reset */
-        if (record->number[index] == entry->number && record->next == index)
-            record->next++;
+    bool anew = fio_machine_count(record->machine)->resets > record->run_resets;
+    bool here = record->number[index] == entry->number;
+    if (move && entry->duration == 0 &&
+        (anew || !here)) { /* it was in the planner at a halt or a reset */
+        record->next += here && record->next == index;
         return;
     }
-    if (record->number[index] != entry->number) {
+    if (!here) {
         record->executed[index]++; /* of a run before, told late */
         record->last_executed += index == record->last_executed;
         return;
     }
     int turn = record->next >= 0 ? record->next : record->last_executed;
-    if (index > turn && fio_machine_count(record->machine)->resets > record->run_resets)
+    if (index > turn && anew)
         return; /* done at once, ahead of moves that a reset threw away */
     if (record->next < 0)
         record->first = (int)index;

@@ -60,7 +60,6 @@ typedef struct print_record {
     int64_t number[PRINT_COMMANDS]; /* that the command had in this run */
     int64_t wrong;                  /* commands executed out of order, twice, or not as they are */
     int64_t altered;                /* of these: not as they are, by their number or their text */
-    int64_t foreign;                /* lines without a K */
     char first_wrong[200];
     int64_t resets, run_resets;
     bool verbose;

@@ -252,6 +252,9 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
     else if (first_missing(&record) < job.count && missing(&record) > counts->undetectable)
         fail(&check, "said to be done, but not all was executed",
              job.commands[first_missing(&record)]);
+    for (int i = 0; i < job.count && runs == 0 && !freely; i++)
+        if (record.executed[i] > 1)
+            fail(&check, "executed twice", job.commands[i]);
     if (differences(&record, counts->undetectable) > 0)
         fail(&check, "executed otherwise", record.first_wrong);
     tally->differences += record.wrong;

@@ -86,7 +86,9 @@ bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
     if (!streamer->echoes || answer->length < TOKEN || answer->length > TOKEN + 8)
         return false;
     const char *tail = answer->text + answer->length - TOKEN;
-    for (int64_t n = streamer->next - 1; n > streamer->executed; n--) {
+    /* Not those that have to be sent again: a marker whose number was cut off when the firmware
+     * threw away what it had received is executed out of its turn. */
+    for (int64_t n = streamer->cursor - 1; n > streamer->executed; n--) {
         const fio_sent_line *line = fio_history_line(streamer, n);
         if (!line || !line->marker)
             continue;
@@ -104,7 +106,7 @@ bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
  * was asked for when nothing was left to come. */
 static void credit_oldest(fio_streamer *streamer) {
     bool alone = streamer->marker_alone && streamer->marker > streamer->executed;
-    for (int64_t n = alone ? streamer->marker : streamer->executed + 1; n < streamer->next; n++) {
+    for (int64_t n = alone ? streamer->marker : streamer->executed + 1; n < streamer->cursor; n++) {
         const fio_sent_line *line = fio_history_line(streamer, n);
         if (!line || !line->marker || !(line->time <= streamer->now))
             continue;
