@@ -16,7 +16,8 @@ enum { RUNS_MOST = 8 };
 typedef struct campaign_tally {
     int64_t prints, runs, clean, reset, stopped, cancelled, faults, resends, repeats, undetectable;
     int64_t given_up, failures, commands, overruns, differences;
-    double seconds;
+    int64_t timed_faults;
+    double seconds, lost_seconds;
     int worst_repeats;
 } campaign_tally;
 
@@ -177,6 +178,29 @@ static int first_missing(const print_record *record) {
     return index;
 }
 
+/* What the faults cost: the same print once more, on a perfect link. */
+static void check_time(print_check *check, campaign_tally *tally, print_plan plan,
+                       const print_job *job, double seconds) {
+    static print_record record;
+    print_result result;
+    double late = plan.machine.faults.late_seconds;
+    int64_t faults = fio_machine_count(check->record->machine)->faults;
+    plan.machine.faults = (fio_machine_faults){0};
+    plan.verbose = false;
+    fio_machine *machine = print_machine(&record, job, &plan);
+    print_run(&result, &record, &plan, 0, NULL);
+    if (result.status != FIO_OK || record.wrong > 0)
+        fail(check, "a perfect link is not enough", result.message);
+    double lost = seconds - result.seconds;
+    char detail[80];
+    snprintf(detail, sizeof detail, "%.1f s for %lld faults", lost, (long long)faults);
+    if (lost > 3 + late + 0.3 * (double)faults)
+        fail(check, "too slow to recover", detail);
+    tally->timed_faults += faults;
+    tally->lost_seconds += lost;
+    fio_machine_free(machine);
+}
+
 static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *tally) {
     static print_job job;
     static print_record record;
@@ -255,6 +279,8 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
     for (int i = 0; i < job.count && runs == 0 && !freely; i++)
         if (record.executed[i] > 1)
             fail(&check, "executed twice", job.commands[i]);
+    if (runs == 0 && result.status == FIO_OK && plan.act == PRINT_NOTHING && !freely)
+        check_time(&check, tally, plan, &job, result.seconds);
     if (differences(&record, counts->undetectable) > 0)
         fail(&check, "executed otherwise", record.first_wrong);
     tally->differences += record.wrong;
@@ -291,13 +317,15 @@ int main(int count, char **arguments) {
     campaign_tally all = {0};
     for (int i = 0; i < runs; i++)
         run_print(seed + (uint64_t)i, freely, verbose, &all);
-    printf("%lld prints, %lld runs, %lld in one run, %lld stopped; %lld commands, %lld faults, "
-           "%lld resends, %lld lines repeated, %lld bytes overrun, %lld undetectable, "
-           "%lld differences, at most %d commands printed again, %.0f s of virtual time; %lld "
-           "failed\n",
-           (long long)all.prints, (long long)all.runs, (long long)all.clean, (long long)all.stopped,
-           (long long)all.commands, (long long)all.faults, (long long)all.resends,
-           (long long)all.repeats, (long long)all.overruns, (long long)all.undetectable,
-           (long long)all.differences, all.worst_repeats, all.seconds, (long long)all.failures);
+    printf(
+        "%lld prints, %lld runs, %lld in one run, %lld stopped; %lld commands, %lld faults, "
+        "%lld resends, %lld lines repeated, %lld bytes overrun, %lld undetectable, "
+        "%lld differences, at most %d commands printed again, %.0f s of virtual time, %.1f s lost "
+        "to %lld faults; %lld failed\n",
+        (long long)all.prints, (long long)all.runs, (long long)all.clean, (long long)all.stopped,
+        (long long)all.commands, (long long)all.faults, (long long)all.resends,
+        (long long)all.repeats, (long long)all.overruns, (long long)all.undetectable,
+        (long long)all.differences, all.worst_repeats, all.seconds, all.lost_seconds,
+        (long long)all.timed_faults, (long long)all.failures);
     return all.failures > 0 || all.prints == 0;
 }
