@@ -11,6 +11,7 @@ enum { MARLIN_LINE = 96 }; /* MAX_CMD_SIZE */
 
 typedef struct marlin {
     bool parentheses; /* PAREN_COMMENTS */
+    bool last_star;   /* the command ends at the last '*': not Marlin's way, but others' */
     char line[MARLIN_LINE];
     int length;
     enum { PLAIN, SKIP, INSIDE } state;
@@ -34,7 +35,7 @@ static inline void marlin_execute(marlin *m, long number, const char *text) {
         while (*p == ' ')
             p++;
     }
-    char *star = strchr(p, '*');
+    char *star = m->last_star ? strrchr(p, '*') : strchr(p, '*');
     if (star)
         *star = 0;
     size_t length = strlen(p);

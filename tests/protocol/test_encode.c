@@ -69,16 +69,20 @@ static void note(void *context, long number, const char *text) {
     r->wrong += !right;
 }
 
-static run start(marlin *m, run *r, long first, bool parentheses) {
+/* `way`: one of four firmwares. */
+static void start(marlin *m, run *r, long first, int way) {
     *r = (run){.first = first, .next = first};
-    *m = (marlin){.parentheses = parentheses, .last = first - 1, .execute = note, .context = r};
-    return *r;
+    *m = (marlin){.parentheses = way & 1,
+                  .last_star = way & 2,
+                  .last = first - 1,
+                  .execute = note,
+                  .context = r};
 }
 
 /* Every sum of a first line, every damage to its end, and all that may come next. */
 static void test_no_damaged_end_merges_lines(void) {
-    static const char *const following[] = {"", "N8 G1 X5 Y5*94\n", "M112\n", "N7 G1 X1*11\n"};
-    static char covered[256], command[MOST], second[MOST], bytes[2 * MOST];
+    static char covered[256], command[MOST], second[MOST], again[MOST], bytes[2 * MOST];
+    const char *const following[] = {"", second, "M112\n", again};
     int sums = 0;
     for (long round = 0; sums < 256 && round < 100000; round++) {
         snprintf(command, sizeof command, "M117 %c%c%c", (int)('!' + random_below(94)),
@@ -95,20 +99,21 @@ static void test_no_damaged_end_merges_lines(void) {
         covered[sum] = 1;
         sums++;
         encode(second, 8, "G1 X5 Y5");
+        strcpy(again, wire);
         for (int flip = 0; flip < 8; flip++)
-            for (size_t next = 0; next < 4; next++) {
+            for (size_t next = 0; next < 8; next++) {
                 marlin m;
                 run r;
-                start(&m, &r, 7, flip % 2);
+                start(&m, &r, 7, next < 4 ? 0 : 2);
                 r.command[0] = command;
                 r.command[1] = "G1 X5 Y5";
                 r.count = 2;
                 memcpy(bytes, wire, size);
                 bytes[size - 1] ^= (char)(1 << flip);
-                const char *follows = next == 1 ? second : following[next];
+                const char *follows = following[next % 4];
                 strcpy(bytes + size, follows);
                 marlin_bytes(&m, bytes, size + strlen(follows));
-                bool merged = next == 1 && m.last != 6; /* two numbered lines passed as one */
+                bool merged = next % 4 == 1 && m.last != 6; /* two numbered lines passed as one */
                 if (!CHECK(!merged && r.wrong == 0 && !r.moved))
                     fprintf(stderr, "    sum %d, bit %d, next %zu: %s", sum, flip, next, wire);
             }
@@ -124,7 +129,7 @@ static void test_plain_lines_would_merge(void) {
     snprintf(bytes + length, 8, "%u\n", fio_checksum(bytes + length - 1 - body, body));
     marlin m;
     run r;
-    start(&m, &r, 8, false);
+    start(&m, &r, 8, 0);
     r.count = 1;
     r.command[0] = "G1 X3.0 Y3.0";
     marlin_bytes(&m, bytes, strlen(bytes));
@@ -215,10 +220,10 @@ static long flip_all(int damaged, const char *const *lines, const char *const *t
     long flips = 0;
     for (size_t byte = from; byte < to; byte++)
         for (int bit = 0; bit < 8; bit++, flips++)
-            for (int parentheses = 0; parentheses < 2; parentheses++) {
+            for (int way = 0; way < 4; way++) {
                 marlin m;
                 run r;
-                start(&m, &r, first, parentheses);
+                start(&m, &r, first, way);
                 r.count = count;
                 memcpy(r.command, texts, (size_t)count * sizeof *texts);
                 bytes[byte] ^= (char)(1 << bit);

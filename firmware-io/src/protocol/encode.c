@@ -23,11 +23,11 @@
  * - The LF becomes f, one of 0b 08 0e 02 1a 2a 4a 8a, and what comes next is appended. If that is a
  *   line "N6 next*44", the sum over it all is c ^ '*' ^ digits(c) ^ f ^ 44, where c = 33 is the sum
  *   of the first body: wrong unless c ^ '*' ^ digits(c) ^ f = 0 (without the last digit and f if f
- *   is the backspace 08). If f is a '*' and what follows has no '*' of its own, the sum is right if
- *   c ^ '*' ^ digits(c) = 0, as no number follows the new '*'. Of the 256 values of c these hit 15;
+ *   is the backspace 08). Of the 256 values of c these hit 15;
  *   for each of them one of: a blank before the '*' (c ^ 20), a zero before the number (c ^ 30),
  *   both (c ^ 10), leads out. If what follows has no '*' and f is none, the first checksum still
- *   is the right one: line 5 is executed, as it should be, up to its '*'.
+ *   is the right one: line 5 is executed, as it should be, up to its '*'. If f is the last '*', no
+ *   number follows it, and c ^ '*' ^ digits(c) is 0 for no c.
  *
  * What remains: two ends of adjacent lines hit at once (three lines in one) pass in about one case
  * of 40, and so does a pair that is longer than the firmware's buffer and cut within the second
@@ -70,7 +70,7 @@ static bool mergeable(unsigned sum) {
     int count = checksum_digits(digits, sum);
     unsigned all = sum ^ '*' ^ fio_checksum(digits, (size_t)count);
     unsigned backspaced = sum ^ '*' ^ fio_checksum(digits, (size_t)count - 1);
-    if (all == 0 || backspaced == 0)
+    if (backspaced == 0)
         return true;
     for (unsigned bit = 1; bit < 256; bit *= 2)
         if (all == ('\n' ^ bit))
