@@ -73,7 +73,7 @@ fio_status fio_descriptor_read(fio_transport *transport, void *bytes, size_t cap
 size_t fio_descriptor_pending(const fio_transport *transport) {
     const fio_descriptor *self = (const fio_descriptor *)transport;
     int held = 0;
-    if (self->lost || ioctl(self->file, TIOCOUTQ, &held) < 0 || held <= 0)
+    if (self->lost || ioctl(self->file, self->question, &held) < 0 || held <= 0)
         return 0;
     return self->counted ? (size_t)held : self->since_empty;
 }

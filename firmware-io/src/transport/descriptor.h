@@ -10,9 +10,10 @@ typedef struct fio_descriptor {
     fio_transport transport; /* comes first */
     int file;
     bool socket; /* send() instead of write(): no signal when the other end is gone */
-    /* The kernel counts what it holds in bytes. Of unix sockets it tells memory instead, of which
-     * only "none" means anything: then what was written since the last time there was none is an
-     * upper bound. */
+    /* What asks the kernel how much it holds: in bytes if `counted`. Of unix sockets it tells
+     * memory instead, of which only "none" means anything: then what was written since the last
+     * time there was none is an upper bound. */
+    unsigned long question;
     bool counted;
     size_t since_empty;
     double drain; /* s until some of a full queue has left */

@@ -5,12 +5,14 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/sockios.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -93,6 +95,9 @@ static fio_status wrap(fio_transport **transport, int file, bool counted, const 
     *self = (fio_descriptor){.transport.type = &socket_type,
                              .file = file,
                              .socket = true,
+                             /* Of TCP what was not sent yet: what was, but is not acknowledged,
+                              * may wait 40 ms for that although it has arrived. */
+                             .question = counted ? SIOCOUTQNSD : SIOCOUTQ,
                              .counted = counted,
                              .drain = drain_seconds};
     snprintf(self->name, sizeof self->name, "%s:%s", kind, address);

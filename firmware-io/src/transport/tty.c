@@ -212,7 +212,8 @@ fio_status fio_tty_open(fio_transport **transport, const char *path, int64_t rat
         close(file);
         return status;
     }
-    self->base = (fio_descriptor){.transport.type = &tty_type, .file = file, .counted = true};
+    self->base = (fio_descriptor){
+        .transport.type = &tty_type, .file = file, .question = TIOCOUTQ, .counted = true};
     self->keep_lines = keep_lines;
     snprintf(self->base.name, sizeof self->base.name, "tty:%s", path);
     bool was;
