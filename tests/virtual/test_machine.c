@@ -251,6 +251,21 @@ static void test_emergency_while_it_hangs(void) {
     bench_free(b);
 }
 
+/* It once took an endless time for one in which an endless number of bytes arrive. */
+static void test_endless_times(void) {
+    bench *b = bench_make(bench_options());
+    bench_ask(b, "G1 X10 F600\n", 0.2);
+    fio_machine_advance(b->machine, INFINITY);
+    fio_machine_advance(b->machine, NAN);
+    fio_machine_advance(b->machine, -1);
+    CHECK(isinf(fio_machine_next(b->machine)));
+    CHECK(strstr(bench_ask(b, "M114\n", 0.1), "ok\n"));
+    CHECK(fio_machine_finish(b->machine) == FIO_FAULTY); /* it was never homed */
+    CHECK(!strcmp(b->log, "G1 X10 F600\nM114\n"));
+    CHECK_NEAR(1.1, b->last_start, 0.05);
+    bench_free(b);
+}
+
 static void test_user_waits(void) {
     bench *b = bench_make(bench_options());
     const char *heard = bench_ask(b, "M0\n", 10);
@@ -318,6 +333,7 @@ int main(void) {
     RUN(test_emergencies);
     RUN(test_quick_stop);
     RUN(test_emergency_while_it_hangs);
+    RUN(test_endless_times);
     RUN(test_user_waits);
     RUN(test_reports_of_itself);
     RUN(test_reset_by_dtr);

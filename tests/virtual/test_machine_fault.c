@@ -116,6 +116,42 @@ static void test_same_seed_same_bytes(void) {
     }
 }
 
+/* In whatever pieces the same bytes come at the same times, and however often it is read. */
+static void test_pieces_change_nothing(void) {
+    static char heard[3][BENCH_HEARD];
+    char text[3000] = "M155 S1\n";
+    for (int i = 1; i <= 60; i++)
+        strcat(text, bench_line(i, i % 9 ? "G1 X10 F6000" : "G1 X0 F3000"));
+    for (int way = 0; way < 3; way++) {
+        fio_machine_options options = faulty(7);
+        options.faults = (fio_machine_faults){.flip_in = 0.1, .flip_out = 0.1, .lose_ok = 0.1};
+        bench *b = bench_make(options);
+        size_t size = strlen(text);
+        for (size_t sent = 0; sent < size;) {
+            size_t part = size - sent < 80 ? size - sent : 80;
+            for (size_t i = 0; i < part; i += way == 1 ? 1 : part)
+                fio_machine_write(b->machine, b->now, text + sent + i, way == 1 ? 1 : part);
+            sent += part;
+            double until = b->now + 0.05;
+            for (int i = 0; way == 2 && i < 500; i++) {
+                b->now += 0.0001;
+                fio_machine_advance(b->machine, b->now);
+                bench_hear(b);
+            }
+            b->now = until;
+            if (way != 1)
+                bench_hear(b);
+        }
+        b->now += 100;
+        bench_hear(b);
+        memcpy(heard[way], b->heard, sizeof b->heard);
+        bench_free(b);
+    }
+    CHECK(strlen(heard[0]) > 1000);
+    CHECK(!strcmp(heard[0], heard[1]));
+    CHECK(!strcmp(heard[0], heard[2]));
+}
+
 /* How much of each fault there is, against its probability: 2,000 draws, four sigma. */
 static void test_frequencies(void) {
     fio_machine_options options = bench_options();
@@ -237,6 +273,7 @@ int main(void) {
     RUN(test_single_flips_are_all_noticed);
     RUN(test_undetectable_is_counted);
     RUN(test_same_seed_same_bytes);
+    RUN(test_pieces_change_nothing);
     RUN(test_frequencies);
     RUN(test_split_and_merged_reads);
     RUN(test_any_bytes_at_any_time);

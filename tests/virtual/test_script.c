@@ -13,7 +13,7 @@ static void expect_error(const char *text, const char *where) {
 static void test_errors_say_where(void) {
     expect_error("at line 5 explode", "line 1, column 11: no such action");
     expect_error("# one\n\n  sometimes reset", "line 3, column 3: a step begins with");
-    expect_error("at lien 5 reset", "column 4: time, line, number, byte or ok");
+    expect_error("at lien 5 reset", "column 4: time, line, number, byte, ok or command");
     expect_error("at line x reset", "column 9: a number is expected");
     expect_error("at line 5x reset", "column 9: this is no number");
     expect_error("at line 2.5 reset", "column 9: a whole number");
@@ -218,6 +218,30 @@ static void test_heaters_that_break(void) {
     bench_free(b);
 }
 
+static void test_commands_as_moments(void) {
+    bench *b = bench_script("at command G28 silent 5; every command M117 answer \"// shown\"\n"
+                            "at command M400 reset");
+    bench_ask(b, "G90\n", 0.1);
+    bench_expect(b, "G280\nG28 X\n", 4.9, "echo:Unknown command: \"G280\"\nok\n");
+    CHECK(strstr(bench_ask(b, "", 5), "ok\n"));
+    bench_expect(b, "M117 a\nM117\nM1170\n", 0.1,
+                 "// shown\nok\n// shown\nok\necho:Unknown command: \"M1170\"\nok\n");
+    bench_expect(b, "M400\n", 0.5, "");
+    CHECK(strstr(bench_ask(b, "", 1), "start\n"));
+    bench_free(b);
+}
+
+static void test_demanded_checksums(void) {
+    bench *b = bench_script("at time 1 demand checksums; at time 5 relax");
+    bench_expect(b, "G90\n", 2, "ok\n");
+    bench_expect(b, "G90\n", 0.1,
+                 "Error:No Checksum with line number, Last Line: 0\nResend: 1\nok\n");
+    bench_expect(b, bench_line(1, "G90"), 0.1, "ok\n");
+    bench_pass(b, 5);
+    bench_expect(b, "G90\n", 0.1, "ok\n");
+    bench_free(b);
+}
+
 static void test_a_person_presses(void) {
     bench *b = bench_script("at time 30 press");
     bench_expect(b, "M113 S0\nM0\n", 29,
@@ -238,6 +262,8 @@ int main(void) {
     RUN(test_answers_of_its_own);
     RUN(test_damage_in_a_span);
     RUN(test_heaters_that_break);
+    RUN(test_commands_as_moments);
+    RUN(test_demanded_checksums);
     RUN(test_a_person_presses);
     return check_verdict();
 }

@@ -69,22 +69,17 @@ static bool is_ready(const memory *self, bool writing) {
            (writing && fio_machine_room(self->machine) > 0);
 }
 
-static fio_status poll_others(struct pollfd *others, int count, double seconds, bool *some) {
-    int timeout = 0;
-    if (seconds > 0)
-        timeout = seconds > 3600 ? 3600000 : (int)ceil(seconds * 1e3);
-    int ready = count > 0 || timeout > 0 ? poll(others, (nfds_t)count, timeout) : 0;
-    *some = ready != 0; /* a signal, too, is a reason to return */
-    return FIO_OK;
+/* True if one of them has something, or a signal came, which is a reason to return, too. */
+static bool poll_others(struct pollfd *others, int count, double seconds) {
+    int timeout = seconds > 3600 ? 3600000 : (int)ceil(fmax(seconds, 0) * 1e3);
+    return (count > 0 || timeout > 0) && poll(others, (nfds_t)count, timeout) != 0;
 }
 
 /* No further descriptor can delay virtual time: they are looked at, not waited for. */
 static fio_status wait_virtual(memory *self, bool writing, struct pollfd *others, int count,
                                double seconds) {
     double deadline = self->now + fmax(seconds, 0);
-    bool some = false;
-    if (count > 0 && poll_others(others, count, 0, &some) != FIO_OK)
-        return FIO_BUG;
+    bool some = poll_others(others, count, 0);
     while (!some && !is_ready(self, writing)) {
         double next = fio_machine_next(self->machine);
         self->now = next < deadline ? next : deadline;
@@ -104,9 +99,7 @@ static fio_status wait_real(memory *self, bool writing, struct pollfd *others, i
         bool ready = is_ready(self, writing) || time >= deadline;
         double next = fmin(fio_machine_next(self->machine), deadline);
         double left = ready ? 0 : fmax((next - time) / self->speed, 0);
-        fio_status status = poll_others(others, count, left, &some);
-        if (status != FIO_OK || ready)
-            return status;
+        some = poll_others(others, count, left) || ready;
     }
     return FIO_OK;
 }

@@ -223,6 +223,16 @@ void fio_printer_say_position(fio_virtual_printer *printer) {
     fio_printer_say(printer, bytes);
 }
 
+/* A stop is pressed where homing ends, and nowhere else. */
+static void say_end_stops(fio_virtual_printer *printer) {
+    static const char *const names[3][2] = {{"x_min: open", "x_min: TRIGGERED"},
+                                            {"y_min: open", "y_min: TRIGGERED"},
+                                            {"z_min: open", "z_min: TRIGGERED"}};
+    fio_printer_say(printer, "Reporting endstop status");
+    for (int i = 0; i < 3; i++)
+        fio_printer_say(printer, names[i][printer->machine[i] <= printer->options.origin[i]]);
+}
+
 static void say_heater(fio_text *text, const char *name, const fio_heater *heater, double time) {
     fio_text_string(text, name);
     fio_text_number(text, fio_heater_reading(heater, time), 2);
@@ -335,7 +345,7 @@ static bool execute_m(fio_virtual_printer *printer, const fio_line *line) {
                         line->text + line->arguments + strspn(line->text + line->arguments, " "));
         return true;
     case 119:
-        fio_printer_say(printer, "Reporting endstop status");
+        say_end_stops(printer);
         return true;
     case 140:
     case 190:

@@ -343,6 +343,9 @@ static bool turn(fio_machine *machine) {
                       machine->queue[machine->oldest].length, machine->options.case_insensitive);
         machine->busy_at = machine->now + machine->busy_seconds;
         machine->processor = FIO_BLOCKED;
+        fio_script_command(machine, machine->line.text);
+        if (machine->plan.reset || machine->plan.halt)
+            return true;
         if (machine->card.saving && !machine->queue[machine->oldest].from_card) {
             fio_firmware_save_line(machine, &machine->line);
             answer(machine, false);

@@ -129,8 +129,10 @@ bool fio_firmware_accepts(fio_machine *machine, const char *text) {
         verdict = judge_repeat(machine, text);
     if (verdict == FIO_LINE_UNCHECKED && numbering == FIO_NUMBERS_SUMS)
         verdict = FIO_LINE_GOOD;
-    if (verdict == FIO_LINE_GOOD && machine->card.saving && bare && strncmp(text, "M29", 3))
-        verdict = FIO_LINE_UNCHECKED; /* what is written to a file shall be what was sent */
+    bool strict = machine->card.saving ? strncmp(text, "M29", 3) != 0 /* a file shall be right */
+                                       : machine->plan.demand_checksums;
+    if (verdict == FIO_LINE_GOOD && bare && strict)
+        verdict = FIO_LINE_UNCHECKED;
     if (verdict == FIO_LINE_GOOD)
         printer->last_number = due;
     else if (verdict == FIO_LINE_REPEATED)

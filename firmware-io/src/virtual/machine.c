@@ -85,6 +85,7 @@ fio_status fio_machine_create(fio_machine **machine, const fio_machine_options *
         return status;
     }
     made->random.state = options->seed;
+    made->reading.state = ~options->seed;
     made->plugged = true;
     made->in.byte_seconds = made->out.byte_seconds =
         options->rate ? (double)BITS_PER_BYTE / (double)options->rate : 0;
@@ -137,12 +138,12 @@ static void arrive(fio_machine *machine) {
     while (fio_wire_next(out) <= machine->now)
         fio_wire_arrive(out);
     if (empty && fio_wire_readable(out) > 0 &&
-        fio_random_chance(&machine->random, machine->options.faults.merge))
+        fio_random_chance(&machine->reading, machine->options.faults.merge))
         machine->merged_until = machine->now + MERGE_SECONDS;
 }
 
 void fio_machine_advance(fio_machine *machine, double now) {
-    if (!(now > machine->now)) /* also of a time that is none */
+    if (!(now > machine->now && now < INFINITY)) /* also of a time that is none */
         now = machine->now;
     for (;;) {
         fio_firmware_step(machine);
@@ -210,9 +211,9 @@ size_t fio_machine_read(fio_machine *machine, double now, void *bytes, size_t ca
     size_t count = fio_wire_readable(out);
     count = count < capacity ? count : capacity;
     machine->splitting = count > 1 && !machine->splitting &&
-                         fio_random_chance(&machine->random, machine->options.faults.split);
+                         fio_random_chance(&machine->reading, machine->options.faults.split);
     if (machine->splitting)
-        count = 1 + (size_t)fio_random_below(&machine->random, (int)count - 1);
+        count = 1 + (size_t)fio_random_below(&machine->reading, (int)count - 1);
     for (size_t i = 0; i < count; i++)
         ((uint8_t *)bytes)[i] = fio_wire_at(out, out->first++);
     machine->counts.bytes_out += (int64_t)count;
@@ -288,8 +289,12 @@ void fio_machine_plug(fio_machine *machine, double now) {
 
 fio_status fio_machine_finish(fio_machine *machine) {
     fio_virtual_printer *printer = machine->printer;
-    for (int turns = 0; turns < FINISHING_TURNS && will_go_on(machine); turns++)
-        fio_machine_advance(machine, fmax(fio_firmware_next(machine), machine->now));
+    for (int turns = 0; turns < FINISHING_TURNS && will_go_on(machine); turns++) {
+        double next = fmin(fio_firmware_next(machine), fio_printer_next(printer));
+        if (!(next < INFINITY))
+            break; /* it waits for its host to read */
+        fio_machine_advance(machine, next);
+    }
     if (printer->waiting)
         fio_printer_end_wait(printer);
     if (printer->open)

@@ -48,7 +48,7 @@ typedef struct fio_late {
 
 /* What the script has ordered and is not yet done. */
 typedef struct fio_plan {
-    bool reset, ok_first;
+    bool reset, ok_first, demand_checksums;
     const char *halt; /* the error, NULL: don't */
     double plug_at, silent_until, mute_until, busy_until, throttle;
     double lose_oks, double_oks, late_oks, late_seconds, lose_answers;
@@ -109,7 +109,8 @@ struct fio_machine {
     fio_card card;
     fio_reader card_reader;
 
-    fio_random random;                  /* of the faults */
+    fio_random random;  /* of the faults */
+    fio_random reading; /* of how reads are cut: how often the host reads changes no other fault */
     int line_length, last_line_length;  /* bytes of the line now arriving, and of the one before */
     int damage_at, lose_at, lose_count; /* where in it; -1: nowhere */
     bool splitting;                     /* the last read was cut: the next one is not */
@@ -147,6 +148,7 @@ void fio_machine_unplug(fio_machine *machine);
 
 /* script_run.c: the moment has come for the count-th time, or at this time. */
 void fio_script_happens(fio_machine *machine, fio_moment moment, double count);
+void fio_script_command(fio_machine *machine, const char *text); /* is about to be executed */
 double fio_script_next(const fio_machine *machine); /* when time alone makes something happen */
 void fio_script_pass(fio_machine *machine);         /* do it, and what could not be done at once */
 

@@ -45,6 +45,8 @@ static const struct {
     {"resend", FIO_DO_RESEND, INTEGER},
     {"miscount", FIO_DO_MISCOUNT, INTEGER},
     {"forget", FIO_DO_FORGET, NOTHING},
+    {"demand checksums", FIO_DO_DEMAND, NOTHING},
+    {"relax", FIO_DO_RELAX, NOTHING},
     {"ok first", FIO_DO_OK_FIRST, NOTHING},
     {"ok last", FIO_DO_OK_LAST, NOTHING},
     {"press", FIO_DO_PRESS, NOTHING},
@@ -212,21 +214,23 @@ static fio_status take_deed(fio_script *script, cursor *here, fio_script_step *s
                           "0.05 … are some");
 }
 
-/* "line 100", "time 12.5" … */
-static fio_status take_moment(cursor *here, fio_moment *moment, double *at) {
+/* "line 100", "time 12.5", "command G28" … */
+static fio_status take_moment(fio_script *script, cursor *here, fio_script_step *step) {
     static const char *const names[FIO_MOMENTS] = {
         [FIO_AT_TIME] = "time", [FIO_AT_LINE] = "line", [FIO_AT_NUMBER] = "number",
-        [FIO_AT_BYTE] = "byte", [FIO_AT_OK] = "ok",
+        [FIO_AT_BYTE] = "byte", [FIO_AT_OK] = "ok",     [FIO_AT_COMMAND] = "command",
     };
     skip_blanks(here);
     for (int i = 0; i < FIO_MOMENTS; i++) {
         if (!take_words(here, names[i]))
             continue;
-        *moment = (fio_moment)i;
-        return i == FIO_AT_TIME ? take_seconds(here, at)
-                                : take_whole(here, at, i == FIO_AT_NUMBER ? 0 : 1);
+        step->moment = (fio_moment)i;
+        if (i == FIO_AT_COMMAND)
+            return take_text(script, here, &step->command);
+        return i == FIO_AT_TIME ? take_seconds(here, &step->at)
+                                : take_whole(here, &step->at, i == FIO_AT_NUMBER ? 0 : 1);
     }
-    return complain(here, "time, line, number, byte or ok is expected");
+    return complain(here, "time, line, number, byte, ok or command is expected");
 }
 
 /* "3 oks", "10 lines", "2.5 seconds" */
@@ -269,9 +273,9 @@ static fio_status add_step(fio_script *script, const cursor *here, const fio_scr
 static fio_status read_from(fio_script *script, cursor *here) {
     fio_script_step step = {.text = -1}, back = {.text = -1, .at = -1};
     cursor start = *here;
-    fio_status status = take_moment(here, &step.moment, &step.at);
+    fio_status status = take_moment(script, here, &step);
     if (status == FIO_OK && take_words(here, "to"))
-        status = take_moment(here, &back.moment, &back.at);
+        status = take_moment(script, here, &back);
     cursor deed = *here;
     skip_blanks(&deed);
     if (status == FIO_OK)
@@ -280,7 +284,7 @@ static fio_status read_from(fio_script *script, cursor *here) {
         return complain(&deed, "after \"from\" a probability is set, as in: flip in 0.05");
     if (status == FIO_OK)
         status = add_step(script, &start, &step);
-    if (status != FIO_OK || back.at < 0)
+    if (status != FIO_OK || (back.at < 0 && back.moment != FIO_AT_COMMAND))
         return status;
     back.deed = step.deed;
     return add_step(script, &start, &back);
@@ -293,10 +297,14 @@ static fio_status read_step(fio_script *script, cursor *here) {
     cursor start = *here;
     fio_status status;
     if (take_words(here, "at"))
-        status = take_moment(here, &step.moment, &step.at);
+        status = take_moment(script, here, &step);
     else if (take_words(here, "after")) {
         status = take_amount(here, &step.moment, &step.at);
         step.at += step.moment != FIO_AT_TIME; /* after 3 oks is at ok 4 */
+    } else if (take_words(here, "every command")) {
+        step.moment = FIO_AT_COMMAND;
+        step.every = 1;
+        status = take_text(script, here, &step.command);
     } else if (take_words(here, "every")) {
         status = take_amount(here, &step.moment, &step.every);
         step.at = step.every;

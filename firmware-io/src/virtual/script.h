@@ -11,11 +11,12 @@
 enum { FIO_SCRIPT_STEPS = 128, FIO_SCRIPT_TEXT = 8192 };
 
 typedef enum fio_moment {
-    FIO_AT_TIME,   /* s */
-    FIO_AT_LINE,   /* the n-th line that arrives, good or bad */
-    FIO_AT_NUMBER, /* the line with this number is accepted */
-    FIO_AT_BYTE,   /* the n-th byte arrives */
-    FIO_AT_OK,     /* before the n-th ok */
+    FIO_AT_TIME,    /* s */
+    FIO_AT_LINE,    /* the n-th line that arrives, good or bad */
+    FIO_AT_NUMBER,  /* the line with this number is accepted */
+    FIO_AT_BYTE,    /* the n-th byte arrives */
+    FIO_AT_OK,      /* before the n-th ok */
+    FIO_AT_COMMAND, /* a line that begins so is about to be executed */
     FIO_MOMENTS
 } fio_moment;
 
@@ -40,6 +41,8 @@ typedef enum fio_deed {
     FIO_DO_RESEND,
     FIO_DO_MISCOUNT,
     FIO_DO_FORGET,
+    FIO_DO_DEMAND, /* from now on no line without number and checksum is taken */
+    FIO_DO_RELAX,
     FIO_DO_OK_FIRST,
     FIO_DO_OK_LAST,
     FIO_DO_PRESS,
@@ -71,7 +74,8 @@ typedef struct fio_script_step {
     double at;    /* the next time it is due; INFINITY: never again */
     double every; /* 0: once */
     double value;
-    int text; /* in the script's texts; -1 */
+    int text;    /* in the script's texts; -1 */
+    int command; /* the same, of FIO_AT_COMMAND */
 } fio_script_step;
 
 typedef struct fio_script {

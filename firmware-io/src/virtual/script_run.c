@@ -1,5 +1,6 @@
 /* Doing what the script says. */
 #include <math.h>
+#include <string.h>
 
 #include "virtual/machine.h"
 
@@ -130,6 +131,10 @@ static void perform(fio_machine *machine, const fio_script_step *step) {
     case FIO_DO_FORGET:
         machine->printer->last_number = 0;
         break;
+    case FIO_DO_DEMAND:
+    case FIO_DO_RELAX:
+        plan->demand_checksums = step->deed == FIO_DO_DEMAND;
+        break;
     case FIO_DO_PRESS:
         fio_firmware_emergency(machine, FIO_EMERGENCY_BREAK);
         break;
@@ -151,6 +156,24 @@ void fio_script_happens(fio_machine *machine, fio_moment moment, double count) {
         step->at = now.every > 0 ? fmax(now.at + now.every, nextafter(count, INFINITY)) : INFINITY;
         if (now.every > 0 && moment != FIO_AT_TIME)
             step->at = now.at + now.every;
+        perform(machine, &now);
+    }
+}
+
+void fio_script_command(fio_machine *machine, const char *text) {
+    fio_script *script = &machine->script;
+    if (!(script->moments >> FIO_AT_COMMAND & 1))
+        return;
+    for (int i = 0; i < script->count; i++) {
+        fio_script_step *step = &script->steps[i];
+        if (step->moment != FIO_AT_COMMAND || step->at == INFINITY)
+            continue;
+        const char *wanted = script->texts + step->command;
+        size_t length = strlen(wanted);
+        if (strncmp(text, wanted, length) || (text[length] && text[length] != ' '))
+            continue;
+        fio_script_step now = *step;
+        step->at = now.every > 0 ? 0 : INFINITY;
         perform(machine, &now);
     }
 }
