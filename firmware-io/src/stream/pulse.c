@@ -101,6 +101,9 @@ static double idle_at(const fio_streamer *streamer) {
     if (!is_watched(streamer) || fio_window_lines(streamer) <= 0)
         return INFINITY;
     double last = fmax(streamer->pulse.busy, streamer->pulse.answered);
+    double sent = streamer->lines[(streamer->answered + 1) & (FIO_HISTORY - 1)].time;
+    if (isfinite(sent))
+        last = fmax(last, sent); /* before that it had nothing to answer */
     return last + (streamer->pulse.busy_seen ? NO_BUSY_SECONDS : fio_pulse_patience(streamer));
 }
 
