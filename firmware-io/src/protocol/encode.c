@@ -43,8 +43,6 @@
 
 #include "base/text.h"
 
-enum { NUMBER_MOST = 24, TAIL_MOST = 8 }; /* "N0" and 19 digits and a blank; " *255" and LF */
-
 unsigned fio_checksum(const char *bytes, size_t size) {
     unsigned sum = 0;
     for (size_t i = 0; i < size; i++)
