@@ -42,8 +42,8 @@ typedef struct fio_transport_type {
     fio_status (*discard)(fio_transport *transport, size_t *kept);
 
     /* Return once there is something to read, room to write (if `writing`), an event of one of the
-     * `count` further descriptors (its revents are set), a loss, or after `seconds`; early returns
-     * for no reason are allowed. The only function that makes time pass. */
+     * `count` further descriptors (its revents are set), a loss, or after `seconds` of now(); early
+     * returns for no reason are allowed. The only function that makes time pass. */
     fio_status (*wait)(fio_transport *transport, bool writing, struct pollfd *others, int count,
                        double seconds);
 

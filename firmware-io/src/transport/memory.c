@@ -92,7 +92,7 @@ static fio_status wait_virtual(memory *self, bool writing, struct pollfd *others
 
 static fio_status wait_real(memory *self, bool writing, struct pollfd *others, int count,
                             double seconds) {
-    double deadline = now_of(self) + fmax(seconds, 0) * self->speed;
+    double deadline = now_of(self) + fmax(seconds, 0); /* of the clock that now() gives */
     for (bool some = false; !some;) {
         double time = now_of(self);
         fio_machine_advance(self->machine, time);
