@@ -1,8 +1,14 @@
 /* One record a line: its fields, parted by blanks, and the CRC-32 of all that is before it. Numbers
- * are hexadecimal, doubles by their bits, so that nothing is rounded; texts are percent-encoded. */
+ * are hexadecimal, doubles by their bits, so that nothing is rounded; texts are percent-encoded.
+ *
+ * A record is in the kernel's hands when fio_journal_add() returns, which a killed process can't
+ * undo, and on the disk soon after: to wait for a slow disk would let the printer's planner run
+ * empty. What a crash of the machine itself loses is known by its boot: numbers of lines written
+ * down in another boot are not to be trusted, as later records may be missing. */
 #define _POSIX_C_SOURCE 200809L
 #include "stream/journal.h"
 
+#include <aio.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -14,12 +20,15 @@
 
 enum {
     RECORD_MOST = 8192,
-    REWRITE_BYTES = 4 << 20 /* a longer file is written anew */
+    BOOT_MOST = 64,
+    REWRITE_BYTES = 64 << 20 /* a longer file is written anew */
 };
 
 struct fio_journal {
     int file;
     int64_t size;
+    struct aiocb sync;    /* what brings the file to the disk */
+    bool syncing, behind; /* records were added since it began */
     fio_journal_job job;
     char path[1024];
 };
@@ -164,6 +173,16 @@ static void get_track(fio_fields *fields, fio_track *track) {
     track->flow_percent = get_double(fields);
 }
 
+/* Of this start of the machine; "" where there is no such thing. */
+static void find_boot(char boot[BOOT_MOST]) {
+    int file = open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC);
+    ssize_t length = file < 0 ? 0 : read(file, boot, BOOT_MOST - 1);
+    if (file >= 0)
+        close(file);
+    boot[length > 0 ? length : 0] = 0;
+    boot[strcspn(boot, "\n")] = 0;
+}
+
 static size_t write_job(char *record, const fio_journal_job *job) {
     fio_text text = fio_text_in(record, RECORD_MOST);
     fio_text_string(&text, "isoprint-job 1 ");
@@ -171,10 +190,14 @@ static size_t write_job(char *record, const fio_journal_job *job) {
     put_string(&text, job->port);
     put_hex(&text, (uint64_t)job->size);
     put_hex(&text, job->fingerprint);
+    char boot[BOOT_MOST];
+    find_boot(boot);
+    put_string(&text, boot);
     return text.length;
 }
 
-static bool read_job(const char *record, fio_journal_job *job) {
+/* *same_boot: the machine has not been started anew since. */
+static bool read_job(const char *record, fio_journal_job *job, bool *same_boot) {
     fio_fields fields = {record, true};
     static const char head[] = "isoprint-job 1 ";
     if (strncmp(record, head, sizeof head - 1) != 0)
@@ -184,6 +207,10 @@ static bool read_job(const char *record, fio_journal_job *job) {
     get_string(&fields, job->port, sizeof job->port);
     job->size = (int64_t)get_hex(&fields);
     job->fingerprint = get_hex(&fields);
+    char boot[BOOT_MOST], now[BOOT_MOST];
+    get_string(&fields, boot, sizeof boot);
+    find_boot(now);
+    *same_boot = *boot && strcmp(boot, now) == 0;
     return fields.good;
 }
 
@@ -243,6 +270,38 @@ static fio_status append(int file, const char *path, char *record, size_t length
     return FIO_OK;
 }
 
+static void finish_sync(fio_journal *journal) {
+    const struct aiocb *const list[1] = {&journal->sync};
+    while (journal->syncing && aio_error(&journal->sync) == EINPROGRESS)
+        aio_suspend(list, 1, NULL);
+    if (journal->syncing)
+        aio_return(&journal->sync);
+    journal->syncing = false;
+}
+
+/* One at a time: what is added meanwhile goes with the next. */
+static fio_status start_sync(fio_journal *journal) {
+    journal->behind = true;
+    if (journal->syncing) {
+        int error = aio_error(&journal->sync);
+        if (error == EINPROGRESS)
+            return FIO_OK;
+        aio_return(&journal->sync);
+        journal->syncing = false;
+        if (error != 0) {
+            errno = error;
+            return fail_to_write(journal->path);
+        }
+    }
+    journal->sync =
+        (struct aiocb){.aio_fildes = journal->file, .aio_sigevent = {.sigev_notify = SIGEV_NONE}};
+    if (aio_fsync(O_DSYNC, &journal->sync) != 0)
+        return errno == EAGAIN ? FIO_OK : fail_to_write(journal->path);
+    journal->syncing = true;
+    journal->behind = false;
+    return FIO_OK;
+}
+
 /* A new file beside the old one, which it replaces once it is on disk. */
 static fio_status begin_file(fio_journal *journal, const fio_stream_resume *resume) {
     char beside[sizeof journal->path + 8], record[RECORD_MOST];
@@ -260,6 +319,7 @@ static fio_status begin_file(fio_journal *journal, const fio_stream_resume *resu
         unlink(beside);
         return status;
     }
+    finish_sync(journal);
     if (journal->file >= 0)
         close(journal->file);
     journal->file = file;
@@ -297,12 +357,15 @@ fio_status fio_journal_add(fio_journal *journal, const fio_stream_resume *resume
     if (status != FIO_OK)
         return status;
     journal->size += (int64_t)length + 10;
-    return fdatasync(journal->file) == 0 ? FIO_OK : fail_to_write(journal->path);
+    return start_sync(journal);
 }
 
 void fio_journal_close(fio_journal *journal, bool done) {
     if (!journal)
         return;
+    finish_sync(journal);
+    if (!done && journal->behind)
+        (void)fdatasync(journal->file);
     close(journal->file);
     if (done)
         unlink(journal->path);
@@ -329,7 +392,7 @@ fio_status fio_journal_read(const char *path, fio_journal_job *job, fio_stream_r
     FILE *file = fopen(path, "re");
     if (!file)
         return fio_fail(FIO_UNREADABLE, "the journal %s can't be read: %s", path, strerror(errno));
-    bool has_job = false, has_resume = false;
+    bool has_job = false, has_resume = false, same_boot = false;
     fio_journal_job read_as;
     fio_stream_resume at, last = {0};
     while (fgets(record, sizeof record, file)) {
@@ -339,7 +402,7 @@ fio_status fio_journal_read(const char *path, fio_journal_job *job, fio_stream_r
         record[--length] = 0;
         if (!check_record(record, length))
             continue;
-        if (!has_job && read_job(record, &read_as))
+        if (!has_job && read_job(record, &read_as, &same_boot))
             has_job = true;
         else if (read_resume(record, &at)) {
             last = at;
@@ -352,5 +415,9 @@ fio_status fio_journal_read(const char *path, fio_journal_job *job, fio_stream_r
                         path);
     *job = read_as;
     *resume = last;
+    if (!same_boot) {
+        resume->number = -1;
+        resume->run_count = 0;
+    }
     return FIO_OK;
 }

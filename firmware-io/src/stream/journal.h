@@ -1,7 +1,7 @@
 /* How far a job came, on disk: survives a killed host.
  *
- * A text file to which records are appended, each with a checksum and synced; the last whole one
- * counts. The first names the job: path, size, fingerprint. A finished job's journal is removed. */
+ * A text file to which records are appended, each with a checksum; the last whole one counts. The
+ * first names the job: path, size, fingerprint. A finished job's journal is removed. */
 #ifndef FIO_STREAM_JOURNAL_H
 #define FIO_STREAM_JOURNAL_H
 
@@ -23,11 +23,13 @@ typedef struct fio_journal_job {
 /* Begin anew, in place of a journal that is there. */
 fio_status fio_journal_create(fio_journal **journal, const char *path,
                               const fio_journal_job *job) FIO_MUST_CHECK;
+/* Returns once a killed process can't lose it; without waiting for the disk, which has it soon. */
 fio_status fio_journal_add(fio_journal *journal, const fio_stream_resume *resume) FIO_MUST_CHECK;
 /* `done`: the job was printed whole; the file is removed. */
 void fio_journal_close(fio_journal *journal, bool done);
 
-/* FIO_UNREADABLE if it is none, or has no whole record. */
+/* FIO_UNREADABLE if it is none, or has no whole record. After the machine was started anew `number`
+ * is -1: the last records may be missing. */
 fio_status fio_journal_read(const char *path, fio_journal_job *job,
                             fio_stream_resume *resume) FIO_MUST_CHECK;
 
