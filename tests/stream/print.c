@@ -108,7 +108,9 @@ static void executed(void *context, const fio_executed *entry) {
         printf("%10.4f ** %s (N%lld, %.4f s)\n", entry->start, entry->text,
                (long long)entry->number, entry->duration);
     bool known = strchr("GM", entry->text[0]); /* what isn't, a firmware only complains about */
-    bool turns = record->next >= 0 && entry->number >= 0 &&
+    bool anew = fio_machine_count(record->machine)->resets > record->run_resets ||
+                record->ending; /* numbers may have begun anew */
+    bool turns = !anew && record->next >= 0 && entry->number >= 0 &&
                  record->number[record->next] == entry->number; /* by its number */
     if (!known || !key || key == entry->text || key[-1] != ' ') {
         if (turns)
@@ -132,7 +134,6 @@ static void executed(void *context, const fio_executed *entry) {
         return;
     }
     bool move = entry->text[0] == 'G' && (entry->text[1] == '0' || entry->text[1] == '1');
-    bool anew = fio_machine_count(record->machine)->resets > record->run_resets;
     bool here = record->number[index] == entry->number;
     if (move && entry->duration == 0 &&
         (anew || !here)) { /* it was in the planner at a halt or a reset */
@@ -196,6 +197,8 @@ static void listen(void *context, const fio_stream_event *event) {
         self->last_mark = *event->resume;
         self->marked = true;
     }
+    if (event->kind == FIO_STREAM_STATE)
+        self->record->ending = event->state == FIO_STREAM_CANCELLING;
     if (!self->plan->verbose)
         return;
     double time = event->time - self->start;

@@ -62,7 +62,7 @@ typedef struct print_record {
     int64_t altered;                /* of these: not as they are, by their number or their text */
     char first_wrong[200];
     int64_t resets, run_resets;
-    bool verbose;
+    bool verbose, ending;
 } print_record;
 
 typedef struct print_result {

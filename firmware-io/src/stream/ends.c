@@ -10,7 +10,8 @@
 
 #define STOP_REPEAT 0.5 /* s after the first emergency stop, then twice as long each time */
 #define STOP_REPEAT_MOST 8.0
-#define END_MOST 1800.0 /* s: heating to the end without an emergency parser */
+enum { REPEATS_MOST = 4 }; /* of heaters off, while it tells of a target */
+#define END_MOST 1800.0    /* s: heating to the end without an emergency parser */
 
 static void done(fio_streamer *streamer, bool heaters_off) {
     streamer->report.status = streamer->end_status;
@@ -101,6 +102,8 @@ static void queue_end(fio_streamer *streamer, bool lift) {
         queue_lift(streamer);
     if (streamer->end_status == FIO_CANCELLED)
         fio_queue_text(streamer, streamer->options.on_cancel);
+    if (streamer->firmware.kind != FIO_FIRMWARE_GRBL)
+        fio_queue_text(streamer, "M105"); /* its answer tells the targets */
     fio_queue_await(streamer);
 }
 
@@ -185,8 +188,15 @@ void fio_streamer_finish(fio_streamer *streamer, double now) {
 }
 
 void fio_end_step(fio_streamer *streamer) {
+    const fio_stream_report *report = &streamer->report;
+    bool hot = streamer->pulse.reported > streamer->end_started &&
+               (report->nozzle_target > 0 || report->bed_target > 0);
+    if (streamer->ending && hot && streamer->end_repeats++ < REPEATS_MOST) {
+        queue_end(streamer, false);
+        return;
+    }
     if (streamer->ending) {
-        done(streamer, true);
+        done(streamer, !hot);
         return;
     }
     streamer->end_status = FIO_OK;

@@ -17,6 +17,7 @@
 #define QUIET_UNKNOWN 0.05 /* before any trip was measured */
 #define AGREE_SECONDS 0.5  /* an error and the Resend that goes with it */
 #define DOUBT_SECONDS 0.7
+#define BEAT_LATE 1.1
 enum { DOUBTS_MOST = 8, DOUBTS_SURE = 3 };
 
 static double wire_seconds(const fio_streamer *streamer, int64_t bytes) {
@@ -135,7 +136,12 @@ static double owed_since(const fio_streamer *streamer) {
         streamer->out_done < streamer->out_length || streamer->raw_length > 0)
         return INFINITY;
     const fio_sent_line *line = &streamer->lines[(streamer->answered + 1) & (FIO_HISTORY - 1)];
-    return fmax(fmax(line->time, recovery->progress), streamer->pulse.busy);
+    double since = fmax(line->time, recovery->progress);
+    if (streamer->pulse.busy <= line->time || !isfinite(line->time))
+        return since;
+    double beat = streamer->firmware.busy_seconds > 0 ? streamer->firmware.busy_seconds : 2;
+    return fmax(since,
+                streamer->pulse.busy + BEAT_LATE * beat); /* it will say so again, or answer */
 }
 
 double fio_recovery_deadline(const fio_streamer *streamer) {

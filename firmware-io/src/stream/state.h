@@ -164,6 +164,7 @@ struct fio_streamer {
     bool skipped, skipped_anew;
 
     bool foreign_pause, finishing, ending, emergency, opened_file;
+    int end_repeats;
     int emergencies; /* times it was sent */
     double emergency_time, end_started;
     bool end_silent; /* it ends because nothing came any more */

@@ -3,7 +3,9 @@
 
 #include "stream/state.h"
 
-enum { STALLS_MANY = 4 }; /* then what is thought to be in the firmware's way was surely lost */
+/* After so many stalls in sequence what seems to be in the firmware's way was surely lost: at once
+ * if it is nothing that takes time, late if it may take long. */
+enum { STALLS_MANY = 1, STALLS_MOVING = 4, STALLS_LONG = 9 };
 
 static int64_t end_of(const fio_streamer *streamer, int64_t number) {
     const fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
@@ -27,6 +29,15 @@ static int64_t bytes_behind_oldest(const fio_streamer *streamer) {
     return fio_window_bytes(streamer) - oldest;
 }
 
+static int stalls_enough(const fio_streamer *streamer) {
+    unsigned traits = 0;
+    for (int64_t n = streamer->answered + 1; n < streamer->cursor; n++)
+        traits |= streamer->lines[n & (FIO_HISTORY - 1)].traits;
+    return traits & (FIO_COMMAND_LONG | FIO_COMMAND_USER) ? STALLS_LONG
+           : traits & FIO_COMMAND_MOVES                   ? STALLS_MOVING
+                                                          : STALLS_MANY;
+}
+
 bool fio_window_open(const fio_streamer *streamer, size_t length) {
     const fio_stream_options *options = &streamer->options;
     int64_t lines = fio_window_lines(streamer);
@@ -43,7 +54,7 @@ bool fio_window_open(const fio_streamer *streamer, size_t length) {
         most_lines = 1;
     if (streamer->recovery.allow_one) {
         bool fits = bytes_behind_oldest(streamer) + (int64_t)length <= most_bytes;
-        return most_bytes <= 0 || fits || streamer->recovery.stalls > STALLS_MANY;
+        return most_bytes <= 0 || fits || streamer->recovery.stalls > stalls_enough(streamer);
     }
     return lines < most_lines && fio_window_bytes(streamer) + (int64_t)length <= most_bytes;
 }
