@@ -1,8 +1,10 @@
 /* Reading jobs: every way in gives the same commands, equal to those of a reader that is too simple
  * to be wrong. */
+#include <fcntl.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -440,6 +442,33 @@ static void test_seek(void) {
     fio_source_close(source);
 }
 
+/* A named pipe whose writer comes late, and goes. */
+static void test_named_pipe(void) {
+    char folder[] = "/tmp/test-source-XXXXXX", path[64];
+    CHECK(mkdtemp(folder) != NULL);
+    snprintf(path, sizeof path, "%s/job", folder);
+    CHECK_EQUAL(0, mkfifo(path, 0600));
+    fio_source *source = NULL;
+    fio_source_command command;
+    CHECK_EQUAL(FIO_OK, fio_source_open(&source, path));
+    CHECK(fio_source_descriptor(source) > 2 && fio_source_whole(source)->bytes == -1);
+    CHECK_EQUAL(FIO_SOURCE_LATER, fio_source_next(source, &command));
+    int writer = open(path, O_WRONLY);
+    CHECK_EQUAL(FIO_SOURCE_LATER, fio_source_next(source, &command));
+    CHECK_EQUAL(8, write(writer, "G28\nG1 X", 8));
+    CHECK_EQUAL(FIO_SOURCE_COMMAND, fio_source_next(source, &command));
+    CHECK_EQUAL(FIO_SOURCE_LATER, fio_source_next(source, &command));
+    CHECK_EQUAL(1, write(writer, "5", 1));
+    CHECK_EQUAL(FIO_SOURCE_LATER, fio_source_next(source, &command));
+    close(writer);
+    CHECK_EQUAL(FIO_SOURCE_COMMAND, fio_source_next(source, &command));
+    CHECK(strcmp(command.text, "G1 X5") == 0);
+    CHECK_EQUAL(FIO_SOURCE_END, fio_source_next(source, &command));
+    fio_source_close(source);
+    unlink(path);
+    rmdir(folder);
+}
+
 static void test_fingerprint(void) {
     static char bytes[300000];
     for (size_t i = 0; i < sizeof bytes; i++)
@@ -482,6 +511,7 @@ int main(void) {
     RUN(test_what_is_no_job);
     RUN(test_long_lines);
     RUN(test_seek);
+    RUN(test_named_pipe);
     RUN(test_fingerprint);
     RUN(test_no_memory);
     return check_verdict();

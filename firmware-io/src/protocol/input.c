@@ -14,8 +14,10 @@ static fio_status failed_open(const char *path, const char *why) {
 
 fio_status fio_input_open(fio_input *input, const char *path) {
     bool standard = strcmp(path, "-") == 0;
-    *input = (fio_input){.descriptor = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC),
-                         .own = !standard};
+    /* A named pipe opens at once, though nobody may be writing to it yet. */
+    int flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK;
+    *input =
+        (fio_input){.descriptor = standard ? STDIN_FILENO : open(path, flags), .own = !standard};
     if (input->descriptor < 0)
         return failed_open(path, strerror(errno));
     snprintf(input->name, sizeof input->name, "%s", standard ? "standard input" : path);
