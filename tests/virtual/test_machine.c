@@ -116,6 +116,16 @@ static void test_burst_overruns(void) {
     CHECK_EQUAL(0, fio_machine_count(b->machine)->undetectable);
     bench_expect(b, bench_line(wanted, "G92 E0"), 0.1, "ok\n");
     bench_free(b);
+
+    /* Longer lines: while the first Resend is said, more of the burst comes in. */
+    b = bench_make(options);
+    burst[0] = 0;
+    for (int i = 1; i <= 40; i++)
+        strcat(burst, bench_line(i, "G92 E0.1234"));
+    heard = bench_ask(b, burst, 5);
+    CHECK_EQUAL(2, bench_count(heard, "Resend: "));
+    CHECK_EQUAL(2, bench_count(heard, "Resend: 13\n"));
+    bench_free(b);
 }
 
 /* Over native USB nothing is lost: the host is held back. */

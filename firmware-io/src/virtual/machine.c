@@ -292,8 +292,10 @@ fio_status fio_machine_finish(fio_machine *machine) {
     for (int turns = 0; turns < FINISHING_TURNS && will_go_on(machine); turns++) {
         double next = fmin(fio_firmware_next(machine), fio_printer_next(printer));
         if (!(next < INFINITY))
-            break; /* it waits for its host to read */
+            break;
         fio_machine_advance(machine, next);
+        if (fio_wire_readable(&machine->out) > FIO_WIRE_BYTES / 4)
+            machine->out.first = machine->out.arrived; /* nobody reads that any more */
     }
     if (printer->waiting)
         fio_printer_end_wait(printer);

@@ -126,11 +126,12 @@ struct fio_machine {
 
 #define FIO_TAINT 0x100
 
-/* firmware.c: do all that is due at `now`. */
+/* firmware.c, firmware_read.c: do all that is due at `now`. */
 void fio_firmware_step(fio_machine *machine);
 /* When something is due of itself; INFINITY: nothing. */
 double fio_firmware_next(const fio_machine *machine);
 void fio_firmware_reset(fio_machine *machine);
+void fio_firmware_read(fio_machine *machine); /* bytes received to lines queued */
 void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted);
 void fio_firmware_lose(fio_machine *machine, uint8_t byte); /* it never came */
 bool fio_firmware_may_receive(const fio_machine *machine);  /* there is room */
