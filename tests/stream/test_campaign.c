@@ -158,7 +158,7 @@ static void check_resume(print_check *check, campaign_tally *tally, int executed
                          int first) {
     char detail[120];
     int window = check->plan->machine.command_slots + check->plan->machine.receive_bytes / 12;
-    int most = 2 * 16 + window + 24 + 8;
+    int most = 4 * 16 + window + 24 + 8;
     snprintf(detail, sizeof detail, "%d executed, goes on with %d%s", executed, first,
              was_reset ? " after a reset" : "");
     if (first > executed)

@@ -224,8 +224,7 @@ static void restore(fio_streamer *streamer) {
 void fio_handshake_step(fio_streamer *streamer) {
     switch (streamer->greeting) {
     case FIO_GREETING_NAME:
-        if (!streamer->named && !streamer->options.firmware &&
-            streamer->attempts < NAME_ATTEMPTS) {
+        if (!streamer->named && !streamer->options.firmware && streamer->attempts < NAME_ATTEMPTS) {
             ask_name(streamer);
             return;
         }

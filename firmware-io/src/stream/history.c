@@ -4,7 +4,8 @@
 
 #include "stream/state.h"
 
-#define BLOCK_LEAST 0.08 /* mm: shorter moves may be too few steps for a block of their own */
+/* mm, far enough to be a block of the planner: what is less waits for the next move to be added. */
+#define BLOCK_LEAST 0.08
 
 fio_sent_line *fio_history_line(fio_streamer *streamer, int64_t number) {
     fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
@@ -16,7 +17,7 @@ void fio_history_restart(fio_streamer *streamer, int64_t last) {
         streamer->lines[i].number = -1;
     streamer->next = streamer->cursor = last + 1;
     streamer->answered = streamer->accepted = streamer->executed = streamer->claimed = last;
-    streamer->drained = last;
+    streamer->unmade = -1;
     streamer->answered_end = streamer->end = 0;
     streamer->run_count = 0;
     streamer->move_first = streamer->move_last = 0;
@@ -46,11 +47,15 @@ static bool note_run(fio_streamer *streamer, int64_t number) {
     return true;
 }
 
-static bool surely_moves(const fio_track *before, const fio_track *after) {
+/* Whether the planner has surely got a block more since the last time this was so. */
+static bool surely_moves(fio_streamer *streamer, bool moves) {
+    const double *position = streamer->track.position;
     double most = 0;
     for (int i = 0; i < 4; i++)
-        most = fmax(most, fabs(after->position[i] - before->position[i]));
-    return most >= BLOCK_LEAST;
+        most = fmax(most, fabs(position[i] - streamer->planned[i]));
+    if (!moves || most >= BLOCK_LEAST) /* G92 moves nothing */
+        memcpy(streamer->planned, position, sizeof streamer->planned);
+    return moves && most >= BLOCK_LEAST;
 }
 
 static bool encode(fio_streamer *streamer, fio_sent_line *line, const char *text, size_t length) {
@@ -111,8 +116,7 @@ bool fio_history_add(fio_streamer *streamer, const char *text, size_t length,
     if (job) {
         line->track = streamer->track;
         fio_track_follow(&streamer->track, text, length);
-        line->moved =
-            (line->traits & FIO_COMMAND_MOVES) && surely_moves(&line->track, &streamer->track);
+        line->moved = surely_moves(streamer, line->traits & FIO_COMMAND_MOVES);
         streamer->job_sent = job->index + 1;
         return true;
     }
@@ -164,11 +168,7 @@ void fio_history_accept(fio_streamer *streamer, int64_t number) {
 static void find_made(fio_streamer *streamer) {
     if (streamer->undrained)
         return;
-    int64_t first = streamer->move_first == streamer->move_last
-                        ? streamer->executed + 1
-                        : streamer->moves[streamer->move_first & (FIO_MOVES_KEPT - 1)];
-    if (first <= streamer->drained)
-        first = streamer->drained + 1;
+    int64_t first = streamer->unmade >= 0 ? streamer->unmade : streamer->executed + 1;
     if (first < streamer->next && !fio_history_line(streamer, first))
         return; /* the moves lie too far apart: what was known to be made before stays */
     for (int64_t n = first; n < streamer->next; n++) {
@@ -194,14 +194,18 @@ void fio_history_execute(fio_streamer *streamer, int64_t number) {
         blocks = FIO_MOVES_KEPT - 1;
     for (int64_t n = streamer->executed + 1; n <= number; n++) {
         const fio_sent_line *line = fio_history_line(streamer, n);
+        if (line && (line->traits & FIO_COMMAND_MOVES) && streamer->unmade < 0)
+            streamer->unmade = n;
         if (line && line->moved) {
             streamer->moves[streamer->move_last++ & (FIO_MOVES_KEPT - 1)] = n;
             if (streamer->move_last - streamer->move_first > (unsigned)blocks)
                 streamer->move_first++;
+            if (streamer->move_last - streamer->move_first == (unsigned)blocks)
+                streamer->unmade = streamer->moves[streamer->move_first & (FIO_MOVES_KEPT - 1)];
         }
         if (line && (line->traits & FIO_COMMAND_DRAINS)) {
             streamer->move_first = streamer->move_last;
-            streamer->drained = n;
+            streamer->unmade = -1;
             streamer->undrained = false;
         }
     }

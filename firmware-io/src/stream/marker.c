@@ -65,7 +65,7 @@ double fio_marker_deadline(const fio_streamer *streamer) {
     if (outstanding && streamer->answered < streamer->marker)
         return INFINITY;
     if (outstanding)
-        return fmax(streamer->pulse.answered, streamer->marker_time) + RETRY_SECONDS;
+        return streamer->marker_answered + RETRY_SECONDS;
     if (streamer->marker_lines >= FIO_MARKER_LINES)
         return streamer->now;
     return streamer->marker_lines > 0 ? streamer->marker_time + FIO_MARKER_SECONDS : INFINITY;
@@ -130,6 +130,7 @@ void fio_marker_answered(fio_streamer *streamer, const fio_answer *answer) {
     if (streamer->answered < streamer->marker || streamer->marker_told)
         return;
     streamer->marker_told = true;
+    streamer->marker_answered = streamer->now;
     if (streamer->echoes && ++streamer->echoes_missed >= ECHOES_MISSED_MOST &&
         !streamer->echo_proved)
         streamer->echoes = false; /* answered again and again, but never echoed: it can't */

@@ -121,15 +121,16 @@ struct fio_streamer {
     fio_stream_run runs[FIO_STREAM_RUNS];
     int64_t moves[FIO_MOVES_KEPT]; /* numbers of executed moves that may not be made */
     unsigned move_first, move_last;
-    int64_t drained; /* all up to this line is made */
-    bool undrained;  /* moves of an earlier run may still be under way */
-    bool renumbered; /* the numbers the firmware now counts are not those of the job's lines */
+    int64_t unmade;    /* the first line that may have moves in the planner; -1 */
+    double planned[4]; /* position up to which moves were surely blocks of the planner */
+    bool undrained;    /* moves of an earlier run may still be under way */
+    bool renumbered;   /* the numbers the firmware now counts are not those of the job's lines */
     int64_t job_accepted, job_made; /* commands */
     fio_track track, track_made;    /* after all that was sent; before the command `job_made` */
 
     /* The marker: a command whose answer proves that all before it was executed. */
     int64_t marker, marker_lines; /* the newest; lines behind it */
-    double marker_time, temperatures_told;
+    double marker_time, marker_answered, temperatures_told;
     bool marker_told;  /* it had its ok */
     bool marker_alone; /* nothing else was under way when it was sent */
     bool probe;        /* one is wanted because an answer is overdue */

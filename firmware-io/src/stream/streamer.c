@@ -169,12 +169,19 @@ static void hear_error(fio_streamer *streamer, const fio_answer *answer) {
         fio_window_answer(streamer, answer); /* instead of an ok */
 }
 
+/* How long usual lines take to be answered; our own waiting is not to be measured. */
+static void measure_pace(fio_streamer *streamer) {
+    const fio_sent_line *line = fio_history_line(streamer, streamer->answered + 1);
+    fio_pulse *pulse = &streamer->pulse;
+    bool counts = line && line->time <= streamer->now && streamer->recovery.stalls == 0 &&
+                  !(line->traits & FIO_COMMAND_LONG);
+    pulse->pace *= 0.75;
+    if (counts)
+        pulse->pace = fmax(pulse->pace, streamer->now - fmax(pulse->answered, line->time));
+}
+
 static void hear_ok(fio_streamer *streamer, const fio_answer *answer) {
-    double since = streamer->now - streamer->pulse.answered;
-    if (streamer->recovery.stalls == 0) /* else it is our own waiting that is measured */
-        streamer->pulse.pace = fmax(0.75 * streamer->pulse.pace, fmin(since, FIO_STALL_PACED));
-    else
-        streamer->pulse.pace *= 0.75;
+    measure_pace(streamer);
     streamer->pulse.answered = streamer->now;
     streamer->rubbish = false;
     if (answer->planner_free >= 0)
