@@ -17,6 +17,7 @@ void fio_firmware_reset(fio_machine *machine) {
     machine->card.saving = machine->card.printing = false;
     machine->card.open = -1;
     machine->card_seconds = 0;
+    machine->transfer = (fio_transfer){.deadline = INFINITY};
     machine->counts.resets++;
     machine->received_first = machine->received_last;
     machine->reader = (fio_reader){0};
@@ -178,7 +179,8 @@ static bool turn(fio_machine *machine) {
         fio_script_command(machine, machine->line.text);
         if (machine->plan.reset || machine->plan.halt)
             return true;
-        if (machine->card.saving && !machine->queue[machine->oldest].from_card) {
+        if (machine->card.saving && !machine->transfer.on &&
+            !machine->queue[machine->oldest].from_card) {
             fio_firmware_save_line(machine, &machine->line);
             answer(machine, false);
         } else if (!machine->dialect->identity &&
@@ -271,6 +273,7 @@ void fio_firmware_step(fio_machine *machine) {
     fio_thermal_check(machine);
     if (machine->processor == FIO_HALTED || machine->now < machine->plan.silent_until)
         return;
+    fio_firmware_packet_late(machine);
     say_busy(machine);
     say_wait(machine);
     report_heating(machine);
@@ -312,6 +315,8 @@ static double next_work(const fio_machine *machine) {
         return next;
     if (works_long(machine) && machine->busy_seconds > 0)
         next = fmin(next, machine->busy_at);
+    if (machine->transfer.on)
+        next = fmin(next, machine->transfer.deadline);
     if (machine->dialect->wait_seconds > 0 && machine->processor == FIO_IDLE)
         next = fmin(next, machine->idle_at);
     return fmin(next, fio_firmware_next_report(machine));

@@ -121,7 +121,10 @@ bool fio_firmware_card(fio_machine *machine, const fio_line *line) {
             fio_firmware_say_progress(machine);
         return true;
     case 28:
-        write_file(machine, name);
+        if (!strncmp(name, "B1", 2) && machine->dialect->capabilities)
+            fio_firmware_binary(machine);
+        else
+            write_file(machine, strncmp(name, "B0 ", 3) ? name : name + 3);
         return true;
     case 29: /* outside of saving */
         return true;

@@ -7,7 +7,7 @@
 static void say_capabilities(fio_machine *machine) {
     static const char *const capabilities[] = {
         "SERIAL_XON_XOFF:0",
-        "BINARY_FILE_TRANSFER:0",
+        "BINARY_FILE_TRANSFER:1",
         "EEPROM:1",
         "VOLUMETRIC:0",
         "AUTOREPORT_POS:1",

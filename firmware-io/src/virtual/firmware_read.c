@@ -155,6 +155,10 @@ void fio_firmware_read(fio_machine *machine) {
     while (machine->queued < machine->options.command_slots && !machine->plan.reset &&
            !machine->plan.halt && machine->received_first != machine->received_last) {
         uint16_t got = machine->received[machine->received_first++ & (FIO_RECEIVE_MOST - 1)];
+        if (machine->transfer.on) {
+            fio_firmware_take_packet_byte(machine, (uint8_t)got);
+            continue;
+        }
         char text[4] = {(char)(got & 0xff)};
         int count = 1;
         bool told = false;

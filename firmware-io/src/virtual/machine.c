@@ -100,6 +100,7 @@ fio_status fio_machine_create(fio_machine **machine, const fio_machine_options *
     made->damage_at = made->lose_at = -1;
     made->taint_at = INT32_MAX;
     made->card.open = -1;
+    made->transfer.deadline = INFINITY;
     fio_firmware_keep_defaults(made);
     *machine = made;
     return FIO_OK;

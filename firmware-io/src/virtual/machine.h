@@ -7,6 +7,7 @@
 #include "virtual/card.h"
 #include "virtual/dialect.h"
 #include "virtual/meatpack.h"
+#include "virtual/packet.h"
 #include "virtual/printer.h"
 #include "virtual/random.h"
 #include "virtual/reader.h"
@@ -55,6 +56,15 @@ typedef struct fio_plan {
     double flip_lines, cut_lines, reject_lines;
     int64_t miscount;
 } fio_plan;
+
+/* A transfer of files in packets. */
+typedef struct fio_transfer {
+    bool on, writing, dummy;
+    uint8_t number; /* of the next packet */
+    int retries;
+    double deadline; /* for the rest of a packet */
+    fio_packet packet;
+} fio_transfer;
 
 /* What M500 keeps. */
 typedef struct fio_settings {
@@ -108,6 +118,7 @@ struct fio_machine {
     bool stored; /* `kept` is valid */
     fio_card card;
     fio_reader card_reader;
+    fio_transfer transfer;
 
     fio_random random;  /* of the faults */
     fio_random reading; /* of how reads are cut: how often the host reads changes no other fault */
@@ -175,6 +186,11 @@ bool fio_firmware_card_line(fio_machine *machine); /* the next one is in card_re
 /* firmware_grbl.c: true: it was one of these. */
 bool fio_firmware_real_time(fio_machine *machine, uint8_t byte);
 bool fio_firmware_dollar(fio_machine *machine, const char *text);
+
+/* firmware_packet.c: M28 B1. */
+void fio_firmware_binary(fio_machine *machine);
+void fio_firmware_take_packet_byte(fio_machine *machine, uint8_t byte);
+void fio_firmware_packet_late(fio_machine *machine); /* the rest of a packet does not come */
 
 /* firmware_setting.c */
 bool fio_firmware_setting(fio_machine *machine, int code);
