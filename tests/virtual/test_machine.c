@@ -51,6 +51,18 @@ static void test_reading(void) {
     bench_free(b);
 }
 
+/* A small buffer is enough for long lines, as long as nothing else has to be done. */
+static void test_small_buffer(void) {
+    fio_machine_options options = bench_options();
+    options.receive_bytes = 16;
+    bench *b = bench_make(options);
+    bench_expect(b,
+                 "M118 0123456789012345678901234567890123456789 ; and a comment of some length\n",
+                 0.1, "0123456789012345678901234567890123456789\nok\n");
+    CHECK_EQUAL(0, fio_machine_count(b->machine)->overruns);
+    bench_free(b);
+}
+
 static void test_advanced_ok(void) {
     fio_machine_options options = bench_options();
     options.advanced_ok = true;
@@ -333,6 +345,7 @@ static void test_wrong_rate_is_rubbish(void) {
 int main(void) {
     RUN(test_numbers_and_checksums);
     RUN(test_reading);
+    RUN(test_small_buffer);
     RUN(test_advanced_ok);
     RUN(test_time_on_the_wire);
     RUN(test_burst_overruns);

@@ -52,10 +52,12 @@ typedef struct fio_machine_options {
 
 typedef struct fio_machine_counts {
     int64_t bytes_in, bytes_out, lines_in, resends, oks;
-    int64_t overruns;     /* bytes lost because the receive buffer was full */
-    int64_t faults;       /* injected */
-    int64_t undetectable; /* damaged lines that pass their checksum: no host can know */
-    int64_t starved;      /* times the planner ran empty between two moves that extrude */
+    int64_t overruns; /* bytes lost because the receive buffer was full */
+    int64_t faults;   /* injected */
+    /* Lines executed although what arrived is not what was sent, or is but a part of it: they pass
+     * their checksum, or have none. No host can know. Never fewer than there are. */
+    int64_t undetectable;
+    int64_t starved; /* times the planner ran empty between two moves that extrude, untold */
     int64_t resets;
 } fio_machine_counts;
 
@@ -79,7 +81,7 @@ FIO_API size_t fio_machine_room(const fio_machine *machine); /* what write() wou
 FIO_API size_t fio_machine_pending(const fio_machine *machine);
 FIO_API size_t fio_machine_discard(fio_machine *machine, double now);
 
-/* Bytes for the host that have arrived by `now`. */
+/* Bytes for the host that have arrived by `now`. What it leaves unread beyond 8 KiB is lost. */
 FIO_API size_t fio_machine_read(fio_machine *machine, double now, void *bytes, size_t capacity);
 FIO_API bool fio_machine_readable(const fio_machine *machine); /* read() would give some */
 

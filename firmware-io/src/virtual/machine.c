@@ -125,7 +125,8 @@ static bool deliver(fio_machine *machine, double limit) {
         fio_wire_arrive(in);
         in->first = in->arrived;
         fio_fault_byte(machine, byte);
-        if (byte == '\n' || byte == '\r' || machine->received_last - machine->received_first > 64)
+        unsigned unread = machine->received_last - machine->received_first;
+        if (byte == '\n' || byte == '\r' || unread > (unsigned)machine->options.receive_bytes / 2)
             return true;
     }
     return false;
@@ -280,12 +281,16 @@ void fio_machine_unplug(fio_machine *machine) {
     machine->merged_until = machine->now;
 }
 
-void fio_machine_plug(fio_machine *machine, double now) {
-    fio_machine_advance(machine, now);
+void fio_machine_plug_in(fio_machine *machine) {
     if (machine->plugged)
         return;
     machine->plugged = true;
     machine->out.first = machine->out.arrived;
+}
+
+void fio_machine_plug(fio_machine *machine, double now) {
+    fio_machine_advance(machine, now);
+    fio_machine_plug_in(machine);
 }
 
 fio_status fio_machine_finish(fio_machine *machine) {

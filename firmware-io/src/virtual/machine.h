@@ -155,8 +155,9 @@ bool fio_firmware_accepts(fio_machine *machine, const char *text);
 /* M108 and the like, or a person at the machine. */
 void fio_firmware_emergency(fio_machine *machine, fio_emergency what);
 
-/* machine.c: the cable is pulled out. */
+/* machine.c: the cable. What arrived may be read until it is put back. */
 void fio_machine_unplug(fio_machine *machine);
+void fio_machine_plug_in(fio_machine *machine);
 
 /* script_run.c: the moment has come for the count-th time, or at this time. */
 void fio_script_happens(fio_machine *machine, fio_moment moment, double count);

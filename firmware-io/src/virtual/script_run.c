@@ -193,7 +193,7 @@ void fio_script_pass(fio_machine *machine) {
     fio_script_happens(machine, FIO_AT_TIME, machine->now);
     if (machine->now >= plan->plug_at) {
         plan->plug_at = INFINITY;
-        machine->plugged = true;
+        fio_machine_plug_in(machine);
     }
     if (machine->pending && machine->now >= plan->silent_until) {
         fio_emergency what = machine->pending;
