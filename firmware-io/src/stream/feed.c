@@ -57,10 +57,17 @@ static bool send_again(fio_streamer *streamer) {
     return true;
 }
 
+/* Where a whole history passes before a lost echo is asked for again, the job leaves room for that.
+ */
+static bool has_room(const fio_streamer *streamer, bool job) {
+    return fio_history_has_room(streamer) &&
+           (!job || streamer->opened_file ||
+            streamer->next - streamer->accepted < FIO_HISTORY - FIO_HISTORY_RESERVE);
+}
+
 static bool send_new(fio_streamer *streamer, const char *text, size_t length,
                      const fio_source_command *job, bool marker) {
-    if (!fio_history_has_room(streamer) ||
-        !fio_window_open(streamer, wire_length(streamer, length)))
+    if (!has_room(streamer, job) || !fio_window_open(streamer, wire_length(streamer, length)))
         return false;
     if (!fio_history_add(streamer, text, length, job, marker)) {
         if (job)

@@ -83,9 +83,12 @@ static void credit(fio_streamer *streamer, int64_t number) {
 
 bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
     char token[TOKEN + 1];
-    if (!streamer->echoes || answer->length < TOKEN || answer->length > TOKEN + 8)
+    size_t length = answer->length;
+    while (length > 0 && answer->text[length - 1] == ' ') /* the encoder may put one there */
+        length--;
+    if (!streamer->echoes || length < TOKEN || length > TOKEN + 8)
         return false;
-    const char *tail = answer->text + answer->length - TOKEN;
+    const char *tail = answer->text + length - TOKEN;
     /* Not those that have to be sent again: a marker whose number was cut off when the firmware
      * threw away what it had received is executed out of its turn. */
     for (int64_t n = streamer->cursor - 1; n > streamer->executed; n--) {
@@ -124,6 +127,8 @@ void fio_marker_answered(fio_streamer *streamer, const fio_answer *answer) {
     if (!streamer->echoes && answer->has_temperatures) {
         if (streamer->now - streamer->temperatures_told >= DOUBLE_SECONDS)
             credit_oldest(streamer);
+        else /* doubted: to be asked again, but not at once, which would be doubted too */
+            streamer->marker_answered = streamer->now;
         streamer->temperatures_told = streamer->now;
         return;
     }

@@ -13,6 +13,7 @@
 
 enum {
     FIO_HISTORY = 1024,          /* lines kept: a power of two */
+    FIO_HISTORY_RESERVE = 64,    /* of them for markers and what the host adds */
     FIO_FIRST_NUMBER = 1000,     /* given by M110: a firmware that was reset counts from 0 */
     FIO_FAR_NUMBER = 2000000000, /* no line has it: whoever gets it tells the last one it had */
     FIO_MARKER_LINES = 24,       /* lines between two markers */
