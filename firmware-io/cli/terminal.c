@@ -64,7 +64,21 @@ int fio_terminal_descriptor(void) {
     return terminal.raw ? terminal.descriptor : -1;
 }
 
-/* What begins with an escape is a key with no letter of its own: none of its bytes count. */
+/* Take the sequences of arrows and the like out: ESC [ … letter, ESC O letter. Each comes in one
+ * read, so that what is cut off spoils no later key. */
+static int without_sequences(unsigned char *keys, int count) {
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        if (keys[i] != 27) {
+            keys[kept++] = keys[i];
+        } else if (i + 1 < count && (keys[i + 1] == '[' || keys[i + 1] == 'O')) {
+            for (i += 2; i < count && keys[i] < '@';)
+                i++;
+        }
+    }
+    return kept;
+}
+
 static void read_keys(void) {
     struct pollfd poll_it = {terminal.descriptor, POLLIN, 0};
     terminal.first = terminal.count = 0;
@@ -76,8 +90,7 @@ static void read_keys(void) {
         terminal.descriptor = -1;
         return;
     }
-    if (terminal.keys[0] != 27)
-        terminal.count = (int)got;
+    terminal.count = without_sequences(terminal.keys, (int)got);
 }
 
 int fio_terminal_key(void) {

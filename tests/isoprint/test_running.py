@@ -17,7 +17,7 @@ SANITIZED = os.environ.get("ISOPRINT_SANITIZED") == "1"
 class Running(Bench):
     def setUp(self):
         super().setUp()
-        self.text = job(layers=12, moves=50)
+        self.text = job(layers=12, moves=50) + "; estimated printing time (normal mode) = 2m 0s\n"
         (self.at / "part.gcode").write_text(self.text)
         self.job = commands(self.text)
 
@@ -65,9 +65,22 @@ class Signals(Running):
                 os.remove(self.at / "executed")
                 os.remove(self.at / "part.gcode.journal")
 
-    def test_a_second_interrupt_is_an_emergency_stop(self):
+    def test_an_emergency_stop(self):
         self.assertIn("emergency stop", self.cancelled(signal.SIGQUIT, seed=6))
-        self.assertIn("halted", (self.at / "summary").read_text() or str(self.printed()))
+        self.assertIn("halted", str(self.printed()["faults"]))
+
+    def test_a_second_interrupt_stops_what_does_not_end(self):
+        """The printer hears of the cancelling only when it is too late for it."""
+        process = self.start("part.gcode", "--port", self.printer("--speed", "30"))
+        self.after(20, process)
+        self.process.send_signal(signal.SIGSTOP)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+        self.process.send_signal(signal.SIGCONT)
+        self.assertIn("emergency stop", self.end(process, 11)[1])
+        self.assertIn("halted", str(self.printed()["faults"]))
 
     def test_interrupts_end_it_even_if_the_printer_is_dead(self):
         process = self.start("part.gcode", "--port", self.printer("--speed", "30"))
@@ -328,8 +341,8 @@ class Resuming(Running):
 
     def test_standard_input_goes_on_from_a_journal(self):
         port = self.printer("--speed", "30", "--no-reset", "--check", "part.gcode")
-        process = self.start("-", "--port", port, "--journal", "j", "--no-reset",
-                             stdin=open(self.at / "part.gcode"))
+        with open(self.at / "part.gcode") as text:
+            process = self.start("-", "--port", port, "--journal", "j", "--no-reset", stdin=text)
         self.after(100, process)
         process.kill()
         process.communicate()
