@@ -62,6 +62,8 @@ static bool read_ok(fio_answer *answer, fio_words words) {
     if (!fio_words_take(&words, "ok") || !(fio_words_done(&words) || *words.at == ' '))
         return false;
     fio_words_blanks(&words);
+    if (starts(&words, "Emergency Stop")) /* Smoothie's answer to M112 */
+        return false;
     after(answer, words, FIO_ANSWER_OK);
     if (!fio_report_temperatures(answer, words))
         read_counts(answer, words);
@@ -155,18 +157,27 @@ static const char *const dead[] = {"Printer halted",
 
 static bool read_error(fio_answer *answer, fio_words words) {
     static const char *const alarms[] = {
-        "ALARM:", "Alarm:", "fatal:", "Emergency Stop!", "HALTED", "// Klipper state: Shutdown",
+        "ALARM:",
+        "Alarm:",
+        "fatal:",
+        "Emergency Stop!",
+        "ok Emergency Stop",
+        "HALTED",
+        "// Klipper state: Shutdown",
+        "// Printer is shutdown",
+        "// Printer is halted",
         NULL};
     if (any_start(&words, alarms)) {
         after(answer, words, answer->kind = FIO_ANSWER_HALTED);
         return true;
     }
-    if (!fio_words_take(&words, "Error:") && !fio_words_take(&words, "error:") &&
-        !fio_words_take(&words, "!!"))
+    bool refused = fio_words_take(&words, "!!");
+    if (!refused && !fio_words_take(&words, "Error:") && !fio_words_take(&words, "error:"))
         return false;
     fio_words_blanks(&words);
     after(answer, words, FIO_ANSWER_ERROR);
-    answer->kind = any_within(&words, dead) ? FIO_ANSWER_HALTED : FIO_ANSWER_ERROR;
+    bool halted = any_within(&words, dead) || (refused && fio_words_done(&words)); /* Smoothie */
+    answer->kind = halted ? FIO_ANSWER_HALTED : FIO_ANSWER_ERROR;
     /* "…, Last Line: 12" */
     static const char last[] = "Last Line: ";
     while (!fio_words_done(&words) && !starts(&words, last))

@@ -144,7 +144,8 @@ const fio_firmware *fio_firmware_of(fio_firmware_kind kind) {
 const fio_firmware *fio_firmware_identify(const fio_answer *answer) {
     static const char label[] = "FIRMWARE_NAME:";
     fio_words words = {answer->text, answer->text + answer->length};
-    if (answer->kind != FIO_ANSWER_FIRMWARE && answer->kind != FIO_ANSWER_START)
+    bool tells = answer->kind == FIO_ANSWER_OK && fio_words_contain(&words, label); /* Klipper's */
+    if (answer->kind != FIO_ANSWER_FIRMWARE && answer->kind != FIO_ANSWER_START && !tells)
         return fio_firmware_of(FIO_FIRMWARE_UNKNOWN);
     if (fio_words_contain(&words, "[VER:"))
         return fio_firmware_of(FIO_FIRMWARE_GRBL);

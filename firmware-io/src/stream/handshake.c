@@ -228,6 +228,8 @@ void fio_handshake_step(fio_streamer *streamer) {
             ask_name(streamer);
             return;
         }
+        if (!streamer->named && !streamer->options.firmware)
+            streamer->echoes = true; /* it does not say who it is: to be tried */
         if (!streamer->plain && (!streamer->firmware.numbered || streamer->options.no_numbers)) {
             streamer->plain = true;
             fio_history_restart(streamer, 0);
@@ -338,16 +340,30 @@ double fio_handshake_deadline(const fio_streamer *streamer) {
     return fmin(fmin(deadline, streamer->step_until), streamer->greeting_until);
 }
 
+/* RepRapFirmware's M118 is another one, Klipper's is an option, the others have none. */
+static void set_firmware(fio_streamer *streamer, const fio_firmware *firmware) {
+    streamer->firmware = *firmware;
+    streamer->echoes =
+        firmware->kind == FIO_FIRMWARE_MARLIN || firmware->kind == FIO_FIRMWARE_PRUSA;
+}
+
 static void started(fio_streamer *streamer, const fio_answer *answer) {
     const fio_firmware *firmware = fio_firmware_identify(answer);
     if (!streamer->options.firmware && firmware->kind > FIO_FIRMWARE_UNKNOWN &&
         firmware->kind < FIO_FIRMWARE_KINDS)
-        streamer->firmware = *firmware;
+        set_firmware(streamer, firmware);
     streamer->started_anew = true;
     streamer->opened_file = streamer->halted = false;
     fio_queue_clear(streamer);
     streamer->handshaking = false;
     go_to(streamer, FIO_GREETING_BOOT, STARTED_SECONDS);
+}
+
+/* Klipper tells its name behind an ok. */
+static bool tells_name(const fio_answer *answer) {
+    return answer->kind == FIO_ANSWER_FIRMWARE ||
+           (answer->kind == FIO_ANSWER_OK &&
+            fio_firmware_identify(answer)->kind != FIO_FIRMWARE_UNKNOWN);
 }
 
 void fio_handshake_hear(fio_streamer *streamer, const fio_answer *answer) {
@@ -357,8 +373,8 @@ void fio_handshake_hear(fio_streamer *streamer, const fio_answer *answer) {
         started(streamer, answer);
     if (answer->kind == FIO_ANSWER_BUSY)
         streamer->greeting_until = fmax(streamer->greeting_until, streamer->now + 10);
-    if (answer->kind == FIO_ANSWER_FIRMWARE && !streamer->options.firmware) {
-        streamer->firmware = *fio_firmware_identify(answer);
+    if (tells_name(answer) && !streamer->options.firmware) {
+        set_firmware(streamer, fio_firmware_identify(answer));
         fio_firmware_learn(&streamer->firmware, answer);
         streamer->named = true;
         if (streamer->greeting == FIO_GREETING_BANNER && !streamer->firmware.numbered)

@@ -61,8 +61,8 @@ fio_status fio_streamer_create(fio_streamer **streamer, const fio_stream_options
     made->out_number = made->told_last = made->await = -1;
     made->recovery.last_line = made->recovery.line = -1;
     made->recovery.stall = FIO_STALL_SECONDS;
-    made->echoes = !options->firmware || options->firmware->kind == FIO_FIRMWARE_MARLIN ||
-                   options->firmware->kind == FIO_FIRMWARE_PRUSA;
+    made->echoes = options->firmware && (options->firmware->kind == FIO_FIRMWARE_MARLIN ||
+                                         options->firmware->kind == FIO_FIRMWARE_PRUSA);
     fio_history_restart(made, 0);
     *streamer = made;
     return FIO_OK;
@@ -138,7 +138,11 @@ void fio_streamer_check(fio_streamer *streamer) {
     }
 }
 
-static void hear_start(fio_streamer *streamer) {
+static void hear_start(fio_streamer *streamer, const fio_answer *answer) {
+    if (streamer->emergency) { /* grbl's answer to Ctrl-X, and of boards that reset themselves */
+        fio_end_halted(streamer, answer);
+        return;
+    }
     if (streamer->state == FIO_STREAM_GREETING && streamer->greeting != FIO_GREETING_RESTORE)
         return;
     if (!streamer->has_source && !streamer->ending && !streamer->emergency) {
@@ -167,6 +171,11 @@ static void hear_error(fio_streamer *streamer, const fio_answer *answer) {
     hear_damaged(streamer);
     if (streamer->plain && streamer->firmware.kind == FIO_FIRMWARE_GRBL)
         fio_window_answer(streamer, answer); /* instead of an ok */
+    /* Klipper and grbl did not do what they answer so; Klipper's own prints end there, too. */
+    if (streamer->plain && streamer->has_source && streamer->job_sent > 0 && !streamer->ending &&
+        (streamer->firmware.kind == FIO_FIRMWARE_KLIPPER ||
+         streamer->firmware.kind == FIO_FIRMWARE_GRBL))
+        fio_end(streamer, FIO_FAULTY, false, "the printer refused a command: %s", answer->text);
 }
 
 /* How long usual lines take to be answered; our own waiting is not to be measured. */
@@ -231,7 +240,7 @@ static void hear(void *context, const fio_answer *answer) {
         hear_error(streamer, answer);
         break;
     case FIO_ANSWER_START:
-        hear_start(streamer);
+        hear_start(streamer, answer);
         break;
     case FIO_ANSWER_HALTED:
         if (!fio_handshake_halted(streamer))
