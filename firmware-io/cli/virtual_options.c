@@ -25,23 +25,27 @@ static const option options[] = {
 
 enum { OPTIONS = sizeof options / sizeof *options };
 
+/* "what it is; 0 to 1" */
+static const char *describe(char bytes[200], const option *of) {
+    fio_text text = fio_text_in(bytes, 200);
+    fio_text_string(&text, of->help);
+    if ((of->kind == NUMBER || of->kind == COUNT || of->kind == SMALL) && of->most < 1e9) {
+        fio_text_string(&text, "; ");
+        fio_text_number(&text, of->least, of->least > 0 && of->least < 1 ? 3 : 0);
+        fio_text_string(&text, " to ");
+        fio_text_number(&text, of->most, 0);
+    }
+    return bytes;
+}
+
 /* "--name VALUE   what it is; 0 to 1" */
 static void print_option(const option *of) {
-    char bytes[200];
+    char bytes[200], help[200];
     fio_text text = fio_text_in(bytes, sizeof bytes);
     fio_text_string(&text, of->name);
     fio_text_string(&text, " ");
     fio_text_string(&text, of->value ? of->value : "");
-    printf("  %-29s %s", bytes, of->help);
-    if ((of->kind == NUMBER || of->kind == COUNT || of->kind == SMALL) && of->most < 1e9) {
-        const int decimals = of->least > 0 && of->least < 1 ? 3 : 0;
-        text = fio_text_in(bytes, sizeof bytes);
-        fio_text_number(&text, of->least, decimals);
-        fio_text_string(&text, " to ");
-        fio_text_number(&text, of->most, 0);
-        printf("; %s", bytes);
-    }
-    putchar('\n');
+    printf("  %-29s %s\n", bytes, describe(help, of));
 }
 
 static void print_help(void) {
@@ -167,6 +171,7 @@ static const char *value_of(const option *of, size_t length, char **argv, int *i
 
 static fio_status read_option(virtual_arguments *given, char **argv, int *i) {
     const char *name = argv[*i];
+    char help[200];
     size_t length = strcspn(name, "=");
     for (const option *of = options; of < options + OPTIONS; of++) {
         if (!of->name || strlen(of->name) != length || strncmp(of->name, name, length) != 0)
@@ -180,11 +185,12 @@ static fio_status read_option(virtual_arguments *given, char **argv, int *i) {
         }
         const char *value = value_of(of, length, argv, i);
         if (!value)
-            return fio_fail(FIO_USAGE, "%s needs a value: %s, %s", of->name, of->value, of->help);
+            return fio_fail(FIO_USAGE, "%s needs a value: %s, %s", of->name, of->value,
+                            describe(help, of));
         if (read_value(to, of, value))
             return FIO_OK;
         return fio_fail(FIO_USAGE, "%s can't be '%s': %s, %s", of->name, value, of->value,
-                        of->help);
+                        describe(help, of));
     }
     return fio_fail(FIO_USAGE, "%s: no such option", name);
 }

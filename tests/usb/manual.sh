@@ -10,11 +10,11 @@ failed=0
 example() { # name; the script is read from standard input
     mkdir "$folder/$1"
     cat >"$folder/$1.sh"
-    [ -s "$folder/$1.sh" ] || { echo "$1: not in the manual"; failed=1; return; }
+    [ "$(wc -l <"$folder/$1.sh")" -ge 3 ] || { echo "$1: not in the manual"; return 1; }
     (cd "$folder/$1" && bash -eu "../$1.sh") >"$folder/$1.out" 2>&1 && return
     echo "$1:"
     cat "$folder/$1.out"
-    failed=1
+    return 1
 }
 
 step() { # what the step of this name runs
@@ -26,10 +26,10 @@ step() { # what the step of this name runs
         running { print substr($0, indent + 1) }' "$manual"
 }
 
-sed -n '/^```sh$/,/^```$/p' "$manual" | grep -v '^```' | example shell
-step 'Print over a serial port' | example serial
+sed -n '/^```sh$/,/^```$/p' "$manual" | grep -v '^```' | example shell || failed=1
+step 'Print over a serial port' | example serial || failed=1
 if [ "$usb" = usb ]; then
-    { printf 'G28\n' >"$folder/part.gcode"; echo 'cp ../part.gcode .'; step 'Print over USB'; } |
-        example usb
+    printf 'M104 S200\nG28\nM109 S200\nM83\nG1 X50 E1 F1200\nM104 S0\n' >"$folder/part.gcode"
+    { echo 'cp ../part.gcode .'; step 'Print over USB'; } | example usb || failed=1
 fi
 exit $failed

@@ -171,6 +171,7 @@ static fio_status name_it(terminal *pty) {
     if (symlink(pty->name, pty->alias) != 0)
         return fio_fail(FIO_NOT_WRITTEN, "%s: can't be made a link to %s: %s", pty->alias,
                         pty->name, strerror(errno));
+    pty->linked = true;
     return FIO_OK;
 }
 
