@@ -116,6 +116,8 @@ static bool send_host(fio_streamer *streamer) {
             return false;
         if (streamer->next == next && !fio_history_has_room(streamer))
             return false;
+        if (asks && streamer->next > next)
+            fio_marker_sent(streamer);
     }
     if (!fio_queue_is_empty(streamer))
         streamer->host_first++;

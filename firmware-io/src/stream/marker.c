@@ -125,7 +125,10 @@ void fio_marker_answered(fio_streamer *streamer, const fio_answer *answer) {
     if (streamer->plain || streamer->marker <= streamer->executed)
         return;
     if (!streamer->echoes && answer->has_temperatures) {
-        if (streamer->now - streamer->temperatures_told >= DOUBLE_SECONDS)
+        const fio_sent_line *line = fio_history_line(streamer, streamer->answered);
+        if (line && line->marker && line->time <= streamer->now)
+            fio_history_execute(streamer, line->number); /* by the count of oks it is its turn */
+        else if (streamer->now - streamer->temperatures_told >= DOUBLE_SECONDS)
             credit_oldest(streamer);
         else /* doubted: to be asked again, but not at once, which would be doubted too */
             streamer->marker_answered = streamer->now;

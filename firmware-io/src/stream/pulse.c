@@ -117,6 +117,8 @@ static double poll_at(const fio_streamer *streamer) {
         return INFINITY;
     if (!fio_window_open(streamer, POLL_BYTES))
         return INFINITY; /* while it is at something long: it would answer all of them at its end */
+    if (!streamer->plain && !streamer->echoes && streamer->marker > streamer->executed)
+        return INFINITY; /* the marker under way tells them, too */
     double period = report_period(streamer);
     double due = fmax(pulse->poll, pulse->reported) + (pulse->reports_seen ? 2 * period : period);
     return due;

@@ -73,6 +73,7 @@ typedef struct fio_recovery {
     int repeats;       /* of the same line, in sequence */
     int oks;           /* that belong to a Resend, not to a line */
     int64_t last_line; /* of an error; -1 */
+    int64_t told;      /* by the last Resend */
     double last_time;
     int doubts; /* a number that can't be was told so many times */
     int64_t doubtful;
