@@ -10,6 +10,8 @@
 #include <sys/un.h>
 #include <termios.h>
 
+#include "transport/tty.h"
+
 static char folder[] = "/tmp/isoprint-ends-XXXXXX";
 
 static void path_in(char path[64], const char *name) {
@@ -125,6 +127,32 @@ static void test_bytes_at_a_wrong_rate_are_rubbish(void) {
     CHECK(says(host, "\nM115\n"));
     CHECK(rig_reads(pty, host, "FIRMWARE_NAME"));
     close(host);
+    fio_standin_close(pty);
+    fio_machine_free(machine);
+}
+
+/* As hosts do that set any rate: BOTHER and a number, here after a rate that has a name. */
+static void test_rates_set_by_their_number_count(void) {
+    fio_machine_options options = fio_machine_options_defaults();
+    fio_machine *machine = NULL;
+    fio_pace pace = fio_pace_start(0);
+    fio_standin *pty = NULL;
+    const char *bytes = "\nM115\n";
+    options.rate = 250000;
+    options.boot_seconds = 0;
+    CHECK_EQUAL(FIO_OK, fio_machine_create(&machine, &options));
+    CHECK_EQUAL(FIO_OK, fio_standin_pty(&pty, machine, &pace, NULL));
+    const char *name = pty->where + strlen("tty:");
+    int early = open_terminal(name); /* keeps it open: a host that has not set its rate yet */
+    rig_turn(pty);
+    fio_transport *host = NULL;
+    size_t count = 0;
+    CHECK_EQUAL(FIO_OK, fio_tty_open(&host, name, 250000, true));
+    rig_turn(pty);
+    CHECK_EQUAL(FIO_OK, fio_transport_write(host, bytes, strlen(bytes), &count));
+    CHECK(rig_reads(pty, early, "FIRMWARE_NAME"));
+    fio_transport_close(host);
+    close(early);
     fio_standin_close(pty);
     fio_machine_free(machine);
 }
@@ -285,6 +313,7 @@ int main(void) {
     RUN(test_pty_is_raw_and_made_raw_again);
     RUN(test_pty_without_a_host_costs_nothing);
     RUN(test_bytes_at_a_wrong_rate_are_rubbish);
+    RUN(test_rates_set_by_their_number_count);
     RUN(test_socket_takes_one_host_after_the_other);
     RUN(test_lines_sent_just_before_leaving_are_executed);
     RUN(test_what_is_no_socket_is_not_replaced);

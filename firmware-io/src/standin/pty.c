@@ -14,6 +14,7 @@
 
 #include "base/memory.h"
 #include "standin/link.h"
+#include "standin/terminal_rate.h"
 
 /* While no host has the terminal open, its master end reports a hang-up at every look, so it is not
  * watched then: inotify tells of the next open. */
@@ -26,19 +27,6 @@ typedef struct terminal {
     char alias[192]; /* the symbolic link; "" */
     bool linked;     /* it was made, so it is ours to remove */
 } terminal;
-
-static int64_t rate_of(speed_t speed) {
-    static const struct {
-        speed_t speed;
-        int64_t rate;
-    } rates[] = {{B9600, 9600},     {B19200, 19200},   {B38400, 38400},     {B57600, 57600},
-                 {B115200, 115200}, {B230400, 230400}, {B460800, 460800},   {B500000, 500000},
-                 {B576000, 576000}, {B921600, 921600}, {B1000000, 1000000}, {B2000000, 2000000}};
-    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
-        if (rates[i].speed == speed)
-            return rates[i].rate;
-    return 0; /* one that has no name here, as 250000: take it as right */
-}
 
 /* What a host left behind: its modes, and answers it did not read. */
 static void tidy(terminal *pty) {
@@ -87,11 +75,9 @@ static void host_left(terminal *pty, double now) {
     }
 }
 
+/* At every look: what the printer says first may come before the host's first byte. */
 static void follow_rate(terminal *pty, double now) {
-    struct termios modes;
-    if (tcgetattr(pty->master, &modes) != 0)
-        return;
-    int64_t rate = rate_of(cfgetospeed(&modes));
+    int64_t rate = fio_terminal_rate(pty->master);
     if (rate > 0 && rate != pty->rate)
         fio_machine_set_rate(pty->standin.machine, now, rate);
     pty->rate = rate;
@@ -119,8 +105,7 @@ static fio_status serve(fio_standin *standin, double now, const struct pollfd *p
         forget(pty, now); /* as a serial bridge that nobody reads */
         return FIO_OK;
     }
-    if (readable)
-        follow_rate(pty, now);
+    follow_rate(pty, now);
     if (fio_link_serve(&pty->link, standin, now, readable))
         return FIO_OK;
     host_left(pty, now);
