@@ -36,13 +36,22 @@ size_t fio_marker_text(const fio_streamer *streamer, char *text, size_t capacity
     return out.length;
 }
 
+/* Of what has no ok; those take no time, so that after a silence none of their answers is to come.
+ */
+static bool only_markers(const fio_streamer *streamer) {
+    for (int64_t n = streamer->answered + 1; n < streamer->cursor; n++)
+        if (!streamer->lines[n & (FIO_HISTORY - 1)].marker)
+            return false;
+    return true;
+}
+
 void fio_marker_sent(fio_streamer *streamer) {
     streamer->marker = streamer->next - 1;
     streamer->marker_lines = 0;
     streamer->marker_time = streamer->now;
     streamer->marker_told = false;
     streamer->probe = false;
-    streamer->marker_alone = fio_window_lines(streamer) <= 1 &&
+    streamer->marker_alone = only_markers(streamer) &&
                              streamer->now - streamer->pulse.answered >= ALONE_SECONDS;
 }
 
@@ -126,10 +135,12 @@ void fio_marker_answered(fio_streamer *streamer, const fio_answer *answer) {
         return;
     if (!streamer->echoes && answer->has_temperatures) {
         const fio_sent_line *line = fio_history_line(streamer, streamer->answered);
-        if (line && line->marker && line->time <= streamer->now)
-            fio_history_execute(streamer, line->number); /* by the count of oks it is its turn */
-        else if (streamer->now - streamer->temperatures_told >= DOUBLE_SECONDS)
+        bool turn = line && line->marker && line->time <= streamer->now; /* by the count of oks */
+        bool fresh = streamer->now - streamer->temperatures_told >= DOUBLE_SECONDS;
+        if (fresh && (streamer->marker_alone || !turn))
             credit_oldest(streamer);
+        else if (turn)
+            fio_history_execute(streamer, line->number);
         else /* doubted: to be asked again, but not at once, which would be doubted too */
             streamer->marker_answered = streamer->now;
         streamer->temperatures_told = streamer->now;
