@@ -54,7 +54,9 @@ fio_status fio_standin_turn(fio_standin *standin, const struct pollfd *polls, in
     standin->heard = standin->told = false;
     fio_status status = serve(standin, polls, count);
     while (status == FIO_OK && !standin->heard && !standin->told && may_jump(standin)) {
-        double next = standin->type->next(standin);
+        double next = standin->type->next(standin), event = fio_machine_next(standin->machine);
+        if (event > next && event < INFINITY)
+            next = event; /* not for each packet that only says that there is nothing */
         if (!(next < INFINITY) || next <= fio_pace_now(standin->pace))
             break;
         fio_pace_skip(standin->pace, next);

@@ -42,7 +42,8 @@ typedef struct usbip {
     fio_standin standin;
     fio_virtual_usb *device;
     fio_usb_host host;
-    int listener; /* -1: plugged into our own kernel */
+    int listener; /* -1: none */
+    bool vhci;    /* plugged into our own kernel */
     caller callers[CALLERS];
     caller *importer;  /* one of them */
     transfer *filling; /* whose data are still coming */
@@ -335,7 +336,7 @@ static fio_status plug(fio_standin *standin, bool in) {
     usbip *s = (usbip *)standin;
     if (!in)
         let_go(s); /* which the kernel at the other end takes for an unplugged device */
-    else if (s->listener < 0)
+    else if (s->vhci)
         return plug_into_kernel(s);
     return FIO_OK;
 }
@@ -383,12 +384,28 @@ fio_status fio_standin_usbip(fio_standin **standin, fio_machine *machine, fio_pa
     return hand_over(standin, s, status);
 }
 
+fio_status fio_standin_usbip_socket(fio_standin **standin, fio_machine *machine, fio_pace *pace,
+                                    fio_virtual_usb *device, int file) {
+    *standin = NULL;
+    usbip *s = create(machine, pace, device);
+    if (!s) {
+        close(file);
+        return fio_fail(FIO_NO_MEMORY, "no memory for a USB/IP device");
+    }
+    s->callers[0].file = file;
+    import(s, &s->callers[0]);
+    snprintf(s->standin.where, sizeof s->standin.where, "usb:socket");
+    *standin = &s->standin;
+    return FIO_OK;
+}
+
 fio_status fio_standin_vhci(fio_standin **standin, fio_machine *machine, fio_pace *pace,
                             fio_virtual_usb *device) {
     *standin = NULL;
     usbip *s = create(machine, pace, device);
     if (!s)
         return fio_fail(FIO_NO_MEMORY, "no memory for a USB/IP device");
+    s->vhci = true;
     snprintf(s->standin.where, sizeof s->standin.where, "usb:vhci_hcd");
     return hand_over(standin, s, plug_into_kernel(s));
 }

@@ -13,6 +13,11 @@ enum { FIO_USBIP_PORT = 3240 };
 fio_status fio_standin_usbip(fio_standin **standin, fio_machine *machine, fio_pace *pace,
                              fio_virtual_usb *device, const char *host, int port) FIO_MUST_CHECK;
 
+/* The far end of a socket over which a kernel, or a test, sends its URBs at once. The descriptor is
+ * non-blocking and belongs to the stand-in from now on, also on failure. */
+fio_status fio_standin_usbip_socket(fio_standin **standin, fio_machine *machine, fio_pace *pace,
+                                    fio_virtual_usb *device, int file) FIO_MUST_CHECK;
+
 /* Plug it into this machine's own kernel: needs root and the module vhci_hcd. */
 fio_status fio_standin_vhci(fio_standin **standin, fio_machine *machine, fio_pace *pace,
                             fio_virtual_usb *device) FIO_MUST_CHECK;
