@@ -142,10 +142,10 @@ static void tell_as_json(fio_narrator *narrator, const fio_job *job,
     fio_json_number(json, "seconds", printing_time(statistics), 1);
     fio_json_number(json, "filament_mm", statistics->filament, 2);
     for (int i = 0; i < 3 && statistics->extrusion_moves > 0; i++) {
-        const char lowest[] = {(char)('x' + i), '_', 'm', 'i', 'n', 0};
-        const char highest[] = {(char)('x' + i), '_', 'm', 'a', 'x', 0};
-        fio_json_number(json, lowest, statistics->extrusion_minimum[i], 3);
-        fio_json_number(json, highest, statistics->extrusion_maximum[i], 3);
+        static const char *const lowest[] = {"x_min", "y_min", "z_min"};
+        static const char *const highest[] = {"x_max", "y_max", "z_max"};
+        fio_json_number(json, lowest[i], statistics->extrusion_minimum[i], 3);
+        fio_json_number(json, highest[i], statistics->extrusion_maximum[i], 3);
     }
     fio_json_number(json, "nozzle", statistics->highest_nozzle, 1);
     fio_json_number(json, "bed", statistics->highest_bed, 1);

@@ -213,7 +213,7 @@ void fio_resumption_end(fio_resumption *resumption, const fio_arguments *argumen
                         fio_status status, const fio_stream_report *report, const fio_job *job,
                         char *command, size_t size) {
     fio_text text = fio_text_in(command, size);
-    bool begun = report->resume.sent > 0;
+    bool begun = report->resume.accepted > 0;
     bool possible = begun && status != FIO_OK && (resumption->journal || !job->is_pipe);
     if (resumption->journal && possible)
         (void)(fio_journal_add(resumption->journal, &report->resume) == FIO_OK);

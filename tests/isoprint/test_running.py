@@ -278,11 +278,14 @@ class Resuming(Running):
         error = self.end(self.start("part.gcode", "--port", port, "--no-reset"), 10)[1]
         self.assertRegex(error, r"after line \d+, byte \d+, layer \d+ of the job")
         command = re.search(r"to go on with the job: isoprint (.*)", error)[1]
-        path = port.removeprefix("tty:")
-        self.until(lambda: os.path.exists(path), "the plug is not put back")
-        done = subprocess.run(["sh", "-c", f"'{PROGRAM}' {command} --wait 60"], cwd=self.at,
-                              capture_output=True, timeout=LONG, env=self.environment)
-        self.assertEqual(0, done.returncode, done.stderr.decode())
+
+        def went_on():  # once it is there again; failing until then spoils nothing
+            done = subprocess.run(["sh", "-c", f"'{PROGRAM}' {command} --wait 60"], cwd=self.at,
+                                  capture_output=True, timeout=LONG, env=self.environment)
+            self.assertIn(done.returncode, (0, 9, 10), done.stderr.decode())
+            return done.returncode == 0
+
+        self.until(went_on, "the plug is not put back")
         summary = self.printed()
         self.assertEqual(0, self.process.returncode, summary)
 
@@ -297,7 +300,12 @@ class Resuming(Running):
         for line in self.job:
             position = made.index(line, position) + 1
         self.assertLess(len(made), len(self.job) + 60)
-        self.assertEqual(0, self.printed()["fault_count"])
+        self.assert_only_z_is_not_homed()
+
+    def assert_only_z_is_not_homed(self):
+        """It can't be homed onto the part."""
+        faults = [fault["text"] for fault in self.printed()["faults"] if fault["code"] != "not_homed"]
+        self.assertEqual([], faults)
 
     def cancel_early(self, *more):
         process = self.start("part.gcode", "--port", self.printer("--speed", "30"), *more)
@@ -320,6 +328,7 @@ class Resuming(Running):
     def test_journals_elsewhere_or_none(self):
         self.assertIn("--resume-from other", self.cancel_early("--journal", "other"))
         os.remove(self.at / "other")
+        os.remove(self.at / "executed")
         self.assertRegex(self.cancel_early("--journal", "none"), r"--resume-from \d+ ")
         self.assertFalse((self.at / "part.gcode.journal").exists())
         self.fails(7, "none/j", "part.gcode", "--journal", "none/j", "--port", "virtual")
@@ -335,7 +344,7 @@ class Resuming(Running):
         made = executed(self.at / "executed")
         self.assertEqual(rest, made[len(made) - len(rest):])
         self.assertNotIn("G28", made)
-        self.assertEqual(0, self.printed()["fault_count"])
+        self.assert_only_z_is_not_homed()
         self.fails(2, "no command from line 99999", "part.gcode", "--resume-from", "99999", "--port",
                    "virtual")
 
