@@ -217,7 +217,7 @@ static void restore(fio_streamer *streamer) {
     go_to(streamer, FIO_GREETING_RESTORE, INFINITY);
     fio_track_restore(track, streamer->started_anew, streamer->options.lift,
                       streamer->started_anew ? streamer->options.retract : 0, text);
-    fio_queue_text(streamer, text);
+    fio_queue_restore(streamer, text);
     fio_queue_await(streamer);
 }
 
@@ -380,7 +380,7 @@ void fio_handshake_hear(fio_streamer *streamer, const fio_answer *answer) {
         if (streamer->greeting == FIO_GREETING_BANNER && !streamer->firmware.numbered)
             start_numbering(streamer);
     }
-    bool refused = answer->kind == FIO_ANSWER_ERROR && answer->line < 0;
+    bool refused = answer->kind == FIO_ANSWER_ERROR && answer->text[0] == 'e'; /* "error:20" */
     if (refused && !streamer->plain &&
         (streamer->greeting == FIO_GREETING_NUMBER || streamer->greeting == FIO_GREETING_NAME)) {
         streamer->handshaking = false; /* it knows neither M110 nor M115: grbl tells by $I */

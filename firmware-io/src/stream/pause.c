@@ -66,7 +66,7 @@ void fio_streamer_resume(fio_streamer *streamer, double now) {
     streamer->track.raised = 0;
     fio_track_restore(&streamer->paused, false, streamer->options.lift,
                       streamer->retracted ? streamer->options.retract : 0, text);
-    fio_queue_text(streamer, text);
+    fio_queue_restore(streamer, text);
     fio_queue_await(streamer);
 }
 

@@ -45,6 +45,17 @@ void fio_queue_text(fio_streamer *streamer, const char *text) {
     }
 }
 
+void fio_queue_restore(fio_streamer *streamer, const char *text) {
+    while (*text) {
+        size_t length = strcspn(text, "\n");
+        bool known = streamer->firmware.kind != FIO_FIRMWARE_GRBL ||
+                     (*text == 'G' && !memchr(text, 'E', length));
+        if (known && !fio_queue_command(streamer, text, length))
+            fio_streamer_warn(streamer, "no room for the command \"%.*s\"", (int)length, text);
+        text += length + (text[length] != 0);
+    }
+}
+
 void fio_queue_await(fio_streamer *streamer) {
     fio_host_command *command = append(streamer);
     if (!command)

@@ -160,7 +160,7 @@ static void stalled(fio_streamer *streamer) {
     fio_recovery *recovery = &streamer->recovery;
     recovery->stalls++;
     recovery->progress = streamer->now;
-    bool is_long = fio_pulse_patience(streamer) > FIO_PLAIN_SECONDS;
+    bool is_long = fio_pulse_patience(streamer) > FIO_PLAIN_SECONDS && !streamer->pulse.busy_seen;
     recovery->stall = fmin(2 * recovery->stall, FIO_STALL_MOST);
     if (is_long)
         recovery->stall = fmax(recovery->stall, FIO_STALL_LONG);

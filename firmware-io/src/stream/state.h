@@ -219,6 +219,7 @@ bool fio_feed(fio_streamer *streamer);
 /* queue.c */
 bool fio_queue_command(fio_streamer *streamer, const char *text, size_t length);
 void fio_queue_text(fio_streamer *streamer, const char *text); /* commands parted by '\n' */
+void fio_queue_restore(fio_streamer *streamer, const char *text); /* what it knows of this */
 void fio_queue_await(fio_streamer *streamer); /* a marker; step follows once it is executed */
 void fio_queue_clear(fio_streamer *streamer);
 bool fio_queue_is_empty(const fio_streamer *streamer);

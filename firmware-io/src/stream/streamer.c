@@ -246,6 +246,9 @@ static void hear(void *context, const fio_answer *answer) {
         if (!fio_handshake_halted(streamer))
             fio_end_halted(streamer, answer);
         break;
+    case FIO_ANSWER_BUSY:
+        fio_recovery_progress(streamer);
+        break;
     case FIO_ANSWER_WAIT: /* idle: whatever is unanswered will remain so */
         if (fio_window_lines(streamer) > 0)
             streamer->recovery.stall = 0.1;

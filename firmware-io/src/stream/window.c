@@ -52,6 +52,8 @@ bool fio_window_open(const fio_streamer *streamer, size_t length) {
                                                    : streamer->firmware.command_slots;
     if (!told && most_bytes <= 0)
         most_lines = 1;
+    else if (!told && streamer->firmware.kind == FIO_FIRMWARE_GRBL)
+        most_lines = INT64_MAX / 2; /* it counts characters alone */
     if (streamer->recovery.allow_one) {
         bool fits = bytes_behind_oldest(streamer) + (int64_t)length <= most_bytes;
         return most_bytes <= 0 || fits || streamer->recovery.stalls > stalls_enough(streamer);
