@@ -77,8 +77,7 @@ static const fio_firmware firmwares[FIO_FIRMWARE_KINDS] = {
     [FIO_FIRMWARE_REPRAP] = {.kind = FIO_FIRMWARE_REPRAP,
                              .name = "RepRapFirmware",
                              .identity = "RepRapFirmware",
-                             .numbered = true,
-                             .resends = true,
+                             .numbered = true, /* what is damaged is passed over in silence */
                              .command_slots = 1,
                              .usual_command_slots = 1,
                              .planner_blocks = 60,

@@ -52,8 +52,14 @@ static const fio_dialect dialects[] = {
      .out_of_band = true,
      .ok_last = true,
      .unknown = "// Unknown command:",
-     .killed = "!! Shutdown due to M112 command",
-     .dead = "!! Shutdown due to M112 command"},
+     .killed = "// Klipper state: Shutdown",
+     .dead = "// Shutdown due to M112 command\n"
+             "// Once the underlying issue is corrected, use the\n"
+             "// \"FIRMWARE_RESTART\" command to reset the firmware, reload the\n"
+             "// config, and restart the host software.\n"
+             "// Printer is shutdown\n"
+             "!! Shutdown due to M112 command\n"
+             "ok"},
     {.name = "grbl",
      .banner = "\nGrbl 1.1h ['$' for help]",
      .numbering = FIO_NUMBERS_IGNORED,
@@ -74,7 +80,6 @@ static const fio_dialect dialects[] = {
      .identity = "FIRMWARE_NAME: RepRapFirmware for Duet 2 WiFi/Ethernet FIRMWARE_VERSION: 3.4.6 "
                  "ELECTRONICS: isoprint virtual printer",
      .numbering = FIO_NUMBERS_SUMS,
-     .resend = "rs ",
      .out_of_band = true,
      .unknown = "Error: Bad command: ",
      .killed = "Emergency Stop! Reset the controller to continue.",

@@ -17,7 +17,7 @@ typedef struct fio_dialect {
     const char *banner;   /* after a reset; lines parted by '\n' */
     const char *identity; /* FIRMWARE_NAME of M115; lines */
     fio_numbering numbering;
-    const char *resend;  /* what stands before the number wanted */
+    const char *resend;  /* what stands before the number wanted; NULL: not a word */
     bool resend_errors;  /* an error message comes before it … */
     bool resend_ok;      /* … and an ok after it */
     bool numbers_ok;     /* "ok 5" */

@@ -183,8 +183,10 @@ static bool turn(fio_machine *machine) {
             !machine->queue[machine->oldest].from_card) {
             fio_firmware_save_line(machine, &machine->line);
             answer(machine, false);
-        } else if (!machine->dialect->identity &&
-                   fio_firmware_dollar(machine, machine->queue[machine->oldest].text))
+        } else if (!machine->dialect->identity
+                       ? fio_firmware_dollar(machine, machine->queue[machine->oldest].text)
+                       : machine->dialect->ok_last &&
+                             fio_firmware_macro(machine, machine->queue[machine->oldest].text))
             answer(machine, true);
         return true;
     case FIO_BLOCKED:

@@ -84,15 +84,17 @@ void fio_firmware_reject(fio_machine *machine, fio_line_verdict verdict, const c
         return;
     if (dialect->resend_errors)
         complain(machine, verdict, text);
-    machine->received_first = machine->received_last;
-    machine->lost_before =
-        machine->lost_before || machine->mid_line; /* the rest of it is to come */
-    machine->mid_line = false;
-    int64_t wanted =
-        dialect->numbering == FIO_NUMBERS_SUMS ? fio_line_number(text) : printer->last_number + 1;
-    say_number(machine, dialect->resend, wanted + machine->plan.miscount);
-    machine->counts.resends++;
     printer->statistics.rejected_lines++;
+    if (!dialect->resend)
+        return;
+    if (dialect->resend_ok) { /* Smoothie refuses what follows one by one */
+        machine->received_first = machine->received_last;
+        machine->lost_before =
+            machine->lost_before || machine->mid_line; /* the rest of it is to come */
+        machine->mid_line = false;
+    }
+    say_number(machine, dialect->resend, printer->last_number + 1 + machine->plan.miscount);
+    machine->counts.resends++;
     if (!dialect->resend_ok)
         return;
     machine->counts.oks++;

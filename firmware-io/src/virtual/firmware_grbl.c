@@ -1,4 +1,5 @@
-/* What is grbl's alone: single bytes that act at once, and the commands that begin with '$'. */
+/* What is grbl's alone: single bytes that act at once, and the commands that begin with '$'; and
+ * Klipper's commands that are words. */
 #include <string.h>
 
 #include "virtual/machine.h"
@@ -38,6 +39,17 @@ bool fio_firmware_real_time(fio_machine *machine, uint8_t byte) {
     default:
         return false;
     }
+}
+
+bool fio_firmware_macro(fio_machine *machine, const char *text) {
+    fio_virtual_printer *printer = machine->printer;
+    if (strcmp(text, "TURN_OFF_HEATERS") != 0)
+        return false;
+    for (int tool = 0; tool < printer->options.tools; tool++)
+        fio_heater_set(&printer->nozzle[tool], printer->clock, 0);
+    fio_heater_set(&printer->bed, printer->clock, 0);
+    fio_firmware_ok(machine);
+    return true;
 }
 
 bool fio_firmware_dollar(fio_machine *machine, const char *text) {

@@ -25,7 +25,7 @@ static bool out_of_band(const fio_machine *machine) {
 
 void fio_firmware_receive(fio_machine *machine, uint8_t byte, bool tainted) {
     if (machine->processor == FIO_HALTED && byte == '\n' && machine->dialect->dead)
-        fio_firmware_say(machine, machine->dialect->dead);
+        fio_firmware_say_lines(machine, machine->dialect->dead);
     if (machine->processor == FIO_HALTED && byte == 0x18 && !machine->dialect->identity)
         machine->plan.reset = machine->quick_reset = true;
     if (machine->processor == FIO_BOOTING || machine->processor == FIO_HALTED) {

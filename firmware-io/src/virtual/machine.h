@@ -187,6 +187,8 @@ bool fio_firmware_card_line(fio_machine *machine); /* the next one is in card_re
 /* firmware_grbl.c: true: it was one of these. */
 bool fio_firmware_real_time(fio_machine *machine, uint8_t byte);
 bool fio_firmware_dollar(fio_machine *machine, const char *text);
+/* Klipper's, likewise. */
+bool fio_firmware_macro(fio_machine *machine, const char *text);
 
 /* firmware_packet.c: M28 B1. */
 void fio_firmware_binary(fio_machine *machine);
