@@ -82,10 +82,14 @@ unplug) # in mid-line; the board keeps its power and its place, and the job goes
 "$isoprint" job.gcode -q --journal journal 2>lost
 code=$?
 [ $code = 10 ] || { echo "exit code $code, not 10"; exit 1; }
+for ((i = 0; i < 200; i++)); do # the node goes a moment after its transfers have ended
+    [ -e /dev/bus/usb/001/002 ] || break
+    sleep 0.02
+done
 exec "$isoprint" --resume-from journal -q --wait 10
 SH
     expect 0 "$virtual" "${usb[@]}" --no-reset --do 'at byte 3500 unplug' --replug 0.1 -- \
-        sh host.sh
+        bash host.sh
     has lost 'unplugged'
     has lost '--resume-from journal'
     extruded_as_file
