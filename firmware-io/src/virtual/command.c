@@ -40,7 +40,7 @@ static void wait_for_user(fio_virtual_printer *printer, const fio_line *line) {
         seconds = fio_line_value(line, 'P') / 1000;
     if (line->code < 2 && fio_line_has(line, 'S'))
         seconds = fio_line_value(line, 'S');
-    fio_printer_wait(printer, seconds > 0 ? seconds : INFINITY, FIO_DWELLING);
+    fio_printer_wait(printer, seconds > 0 ? fmin(seconds, LONGEST_DWELL) : INFINITY, FIO_DWELLING);
     printer->wait_user = true;
 }
 

@@ -6,9 +6,9 @@
 
 #include "base/memory.h"
 
-#define FINISHING_TURNS 1000000 /* what is not done by then is never done */
-#define MERGE_SECONDS 0.016     /* FTDI's latency timer, as it is set from the factory */
-#define BITS_PER_BYTE 10        /* a start bit, eight, a stop bit */
+#define FINISHING_TURNS 200000 /* what is not done by then is never done */
+#define MERGE_SECONDS 0.016    /* FTDI's latency timer, as it is set from the factory */
+#define BITS_PER_BYTE 10       /* a start bit, eight, a stop bit */
 
 fio_machine_options fio_machine_options_defaults(void) {
     return (fio_machine_options){
