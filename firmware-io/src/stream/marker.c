@@ -114,6 +114,20 @@ bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
     return false;
 }
 
+/* RepRapFirmware passes over what is damaged without a word: a line without an ok may be one whose
+ * answer was lost, or one that was never executed. */
+static bool lost_unseen(fio_streamer *streamer, int64_t marker) {
+    for (int64_t n = streamer->executed + 1; n < marker && !streamer->ending; n++) {
+        const fio_sent_line *line = fio_history_line(streamer, n);
+        if (!line || line->marker)
+            continue;
+        fio_end(streamer, FIO_LINK_LOST, true,
+                "a line got no answer, and this firmware does not tell whether it had it");
+        return true;
+    }
+    return false;
+}
+
 /* The answer of an M105 may have been lost: this one counts for the first that has none, unless it
  * was asked for when nothing was left to come. */
 static void credit_oldest(fio_streamer *streamer) {
@@ -122,6 +136,8 @@ static void credit_oldest(fio_streamer *streamer) {
         const fio_sent_line *line = fio_history_line(streamer, n);
         if (!line || !line->marker || !(line->time <= streamer->now))
             continue;
+        if (!streamer->firmware.resends && n > streamer->answered && lost_unseen(streamer, n))
+            return;
         fio_history_execute(streamer, n);
         if (n > streamer->answered)
             fio_window_set(streamer, n);
