@@ -279,7 +279,8 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
     for (int i = 0; i < job.count && runs == 0 && !freely; i++)
         if (record.executed[i] > 1)
             fail(&check, "executed twice", job.commands[i]);
-    if (runs == 0 && result.status == FIO_OK && plan.act == PRINT_NOTHING && !freely)
+    if (runs == 0 && result.status == FIO_OK && plan.act == PRINT_NOTHING && !freely &&
+        !plan.machine.script)
         check_time(&check, tally, plan, &job, result.seconds);
     if (differences(&record, counts->undetectable) > 0)
         fail(&check, "executed otherwise", record.first_wrong);
