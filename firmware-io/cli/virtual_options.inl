@@ -12,7 +12,8 @@
 #endif
 
 VIRTUAL_GROUP("What it stands at the far end of")
-VIRTUAL_OPTION("--run", TEXT, run, 0, 0, "FILE", "a G-code file, '-': standard input; no line at all")
+VIRTUAL_OPTION("--run", TEXT, run, 0, 0, "FILE",
+               "a G-code file, '-': standard input; no line at all")
 VIRTUAL_OPTION("--pty", LINK, pty, 0, 0, "[LINK]",
                "a pseudo terminal; LINK: a symbolic link to make to it")
 VIRTUAL_OPTION("--socket", TEXT, socket, 0, 0, "PATH", "a Unix socket")

@@ -4,7 +4,7 @@
 manual=$1 programs=$2 usb=$3
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
-export PATH="$programs:$PATH" ASAN_OPTIONS=verify_asan_link_order=0
+export LC_ALL=C PATH="$programs:$PATH" ASAN_OPTIONS=verify_asan_link_order=0
 failed=0
 
 example() { # name; the script is read from standard input

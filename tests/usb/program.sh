@@ -5,7 +5,7 @@ program=$1 usb=$2
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-export ASAN_OPTIONS=verify_asan_link_order=0${ASAN_OPTIONS:+:$ASAN_OPTIONS}
+export LC_ALL=C ASAN_OPTIONS=verify_asan_link_order=0${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 failed=0
 
 expect() { # code, then the command
@@ -89,7 +89,8 @@ has out '"oks": 3'
 expect 8 "$program" --pty printer "${quick[@]}" -- bash host.sh G28 'G1 X900 F600'
 has err 'fault outside'
 printf 'G28\nG1 X5 F600\n' >file
-expect 0 "$program" --pty printer "${quick[@]}" --check file -- bash host.sh M105 G28 M114 'G01 X5 F600'
+expect 0 "$program" --pty printer "${quick[@]}" --check file -- \
+    bash host.sh M105 G28 M114 'G01 X5 F600'
 expect 8 "$program" --pty printer "${quick[@]}" --check file -- bash host.sh G28
 has err "file: line 2 'G1 X5F600': was never executed"
 expect 8 "$program" --pty printer "${quick[@]}" --check file -- bash host.sh G28 G28 'G1 X5 F600'
