@@ -15,7 +15,7 @@ static void execute(void *context, const fio_executed *executed) {
     *last = executed->start;
 }
 
-/* Control bytes 1 to 7 let time pass, as much as ten to their power milliseconds. */
+/* Control bytes 1 to 7 let time pass, from a millisecond to 1,000 s. */
 static void converse(fio_machine *machine, const uint8_t *bytes, size_t size) {
     char heard[512];
     double now = 0;
@@ -26,7 +26,7 @@ static void converse(fio_machine *machine, const uint8_t *bytes, size_t size) {
             continue;
         }
         double end = now + pow(10, bytes[i] - 4.);
-        for (int turns = 0; now < end && turns < 2000; turns++) {
+        for (int turns = 0; now < end && turns < 500; turns++) {
             double next = fio_machine_next(machine);
             if (next < now)
                 abort();

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-#define FINISHING_TURNS 200000 /* what is not done by then is never done */
+#define FINISHING_TURNS 120000 /* what is not done by then is never done */
 #define MERGE_SECONDS 0.016    /* FTDI's latency timer, as it is set from the factory */
 #define BITS_PER_BYTE 10       /* a start bit, eight, a stop bit */
 
@@ -295,6 +295,8 @@ void fio_machine_plug(fio_machine *machine, double now) {
 
 fio_status fio_machine_finish(fio_machine *machine) {
     fio_virtual_printer *printer = machine->printer;
+    machine->busy_seconds = machine->temperature_seconds = 0; /* nobody listens any more */
+    machine->position_seconds = machine->card_seconds = 0;
     for (int turns = 0; turns < FINISHING_TURNS && will_go_on(machine); turns++) {
         double next = fmin(fio_firmware_next(machine), fio_printer_next(printer));
         if (!(next < INFINITY))
