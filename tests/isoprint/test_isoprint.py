@@ -2,6 +2,7 @@
 
 import os
 import re
+import resource
 import subprocess
 import threading
 
@@ -214,6 +215,15 @@ class Printing(Bench):
         if os.path.exists("/dev/full"):
             self.fails(7, "/dev/full", "part.gcode", "-q", "--log", "/dev/full", "--port", "virtual",
                        "--virtual", "speed=0")
+
+    def test_a_limit_for_files_does_not_end_the_print(self):
+        """ulimit -f: a signal of its own, which ends who does not know it, heaters on."""
+        port = self.printer("--speed", "instant")
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+        done = self.run_it("part.gcode", "-q", "--log", "log", "--port", port, code=7, preexec_fn=limit)
+        self.assertIn("log: could not be written", done.stderr.decode())
+        self.assertEqual(commands(self.text), executed(self.at / "executed"))
+        self.assertEqual(0, self.printed()["fault_count"])
 
     def test_events_follow_the_schema(self):
         found = events(self.virtual("part.gcode", "--json", options="speed=0 flip_in=0.02 seed=5")
