@@ -61,7 +61,13 @@ static bool surely_moves(fio_streamer *streamer, bool moves) {
 static bool encode(fio_streamer *streamer, fio_sent_line *line, const char *text, size_t length) {
     size_t most = streamer->firmware.line_most > 0 ? (size_t)streamer->firmware.line_most
                                                    : (size_t)FIO_WIRE_LINE_MOST - 1;
-    char disguised[FIO_COMMAND_MOST + 3];
+    char disguised[FIO_COMMAND_MOST + 3], plain[FIO_COMMAND_MOST + 1];
+    if (streamer->firmware.kind == FIO_FIRMWARE_REPETIER && memchr(text, ':', length) &&
+        length < sizeof plain) { /* it ends a line; older ones end it there */
+        for (size_t i = 0; i < length; i++)
+            plain[i] = text[i] == ':' ? '.' : text[i];
+        text = plain;
+    }
     if (!streamer->plain && !streamer->options.upload && streamer->firmware.emergency_parser &&
         length <= FIO_COMMAND_MOST) {
         length = fio_encode_disguised(disguised, text, length);

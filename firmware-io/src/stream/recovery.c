@@ -18,7 +18,7 @@
 #define AGREE_SECONDS 0.5  /* an error and the Resend that goes with it */
 #define DOUBT_SECONDS 0.7
 #define BEAT_LATE 1.1
-enum { DOUBTS_MOST = 8, DOUBTS_SURE = 3 };
+enum { DOUBTS_MOST = 8, DOUBTS_SURE = 3, REPEATS_MOST = 100 };
 
 static double wire_seconds(const fio_streamer *streamer, int64_t bytes) {
     return streamer->options.rate > 0 ? (double)bytes * 10 / (double)streamer->options.rate : 0;
@@ -85,6 +85,13 @@ static void rewind_to(fio_streamer *streamer, int64_t number) {
         fio_window_set(streamer, number - 1);
     int64_t bytes = fio_window_bytes(streamer);
     recovery->repeats = number == recovery->line ? recovery->repeats + 1 : 0;
+    if (recovery->repeats >= REPEATS_MOST && !streamer->ending) {
+        fio_end(streamer, FIO_LINK_LOST, true,
+                "the printer asks for line %lld again and again, however often it is sent: is the "
+                "cable good?",
+                (long long)number);
+        return;
+    }
     recovery->line = number;
     recovery->left = (int)behind - 1;
     streamer->cursor = number;
@@ -161,7 +168,7 @@ static void stalled(fio_streamer *streamer) {
     recovery->stalls++;
     recovery->progress = streamer->now;
     bool is_long = fio_pulse_patience(streamer) > FIO_PLAIN_SECONDS && !streamer->pulse.busy_seen;
-    recovery->stall = fmin(2 * recovery->stall, FIO_STALL_MOST);
+    recovery->stall = fmin(2 * recovery->stall, is_long ? FIO_STALL_RARE : FIO_STALL_MOST);
     if (is_long)
         recovery->stall = fmax(recovery->stall, FIO_STALL_LONG);
     streamer->report.lost_answers++;

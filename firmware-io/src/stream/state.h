@@ -26,7 +26,8 @@ enum {
 #define FIO_STALL_SECONDS 0.6  /* an ok is overdue */
 #define FIO_STALL_PACED 2.5    /* … at most, where oks come slowly anyway */
 #define FIO_STALL_MOST 8.0     /* the same, after having asked in vain */
-#define FIO_STALL_LONG 5.0     /* … where what is under way may take long */
+#define FIO_STALL_LONG 5.0     /* … where what is under way may take long, and in the end */
+#define FIO_STALL_RARE 60.0
 #define FIO_PLAIN_SECONDS                                                                          \
     60.0                         /* silence during usual commands, of a firmware with no heartbeat \
                                   */

@@ -7,6 +7,8 @@
  * if it is nothing that takes time, late if it may take long. */
 enum { STALLS_MANY = 1, STALLS_MOVING = 4, STALLS_LONG = 9 };
 
+enum { BYTES_LEAST = 63 }; /* that the smallest receive buffers hold */
+
 static int64_t end_of(const fio_streamer *streamer, int64_t number) {
     const fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
     return line->number == number ? line->end : streamer->answered_end;
@@ -55,8 +57,10 @@ bool fio_window_open(const fio_streamer *streamer, size_t length) {
     else if (!told && streamer->firmware.kind == FIO_FIRMWARE_GRBL)
         most_lines = INT64_MAX / 2; /* it counts characters alone */
     if (streamer->recovery.allow_one) {
-        bool fits = bytes_behind_oldest(streamer) + (int64_t)length <= most_bytes;
-        return most_bytes <= 0 || fits || streamer->recovery.stalls > stalls_enough(streamer);
+        int64_t behind = bytes_behind_oldest(streamer);
+        bool fits = behind + (int64_t)length <= (most_bytes > 0 ? most_bytes : BYTES_LEAST);
+        return fits || (behind == 0 && most_bytes <= 0) ||
+               streamer->recovery.stalls > stalls_enough(streamer);
     }
     return lines < most_lines && fio_window_bytes(streamer) + (int64_t)length <= most_bytes;
 }
