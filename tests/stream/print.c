@@ -202,7 +202,8 @@ static void listen(void *context, const fio_stream_event *event) {
     if (event->kind == FIO_STREAM_STATE)
         self->record->ending = event->state == FIO_STREAM_CANCELLING;
     if (event->kind == FIO_STREAM_STATE && event->state == FIO_STREAM_RUNNING)
-        self->record->run_resets = fio_machine_count(self->record->machine)->resets;
+        self->record->run_resets = self->record->print_resets =
+            fio_machine_count(self->record->machine)->resets;
     if (!self->plan->verbose)
         return;
     double time = event->time - self->start;

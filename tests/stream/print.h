@@ -61,7 +61,7 @@ typedef struct print_record {
     int64_t wrong;                  /* commands executed out of order, twice, or not as they are */
     int64_t altered;                /* of these: not as they are, by their number or their text */
     char first_wrong[200];
-    int64_t resets, run_resets;
+    int64_t resets, run_resets, print_resets; /* before, and when the run, its print, began */
     bool verbose, ending;
 } print_record;
 

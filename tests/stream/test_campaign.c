@@ -234,7 +234,8 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
         anew = anew || from.number < 0;
         if (runs > 0 && record.first >= 0 && !freely)
             check_resume(&check, tally, record.last_executed,
-                         anew || fio_machine_count(machine)->resets > record.resets, record.first);
+                         anew || fio_machine_count(machine)->resets > record.resets,
+                         /* while it printed */ record.first);
         tally->runs++;
         tally->resends += result.report.resends;
         tally->repeats += result.report.repeats;
@@ -266,7 +267,7 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
         if (record.first >= 0 || runs == 0)
             anew = false;
         if (record.first >= 0 || runs == 0)
-            record.resets = fio_machine_count(machine)->resets;
+            record.resets = record.print_resets;
     }
     const fio_machine_counts *counts = fio_machine_count(machine);
     if (result.status != FIO_OK && freely)

@@ -51,8 +51,8 @@ void fio_marker_sent(fio_streamer *streamer) {
     streamer->marker_time = streamer->now;
     streamer->marker_told = false;
     streamer->probe = false;
-    streamer->marker_alone = only_markers(streamer) &&
-                             streamer->now - streamer->pulse.answered >= ALONE_SECONDS;
+    streamer->marker_alone =
+        only_markers(streamer) && streamer->now - streamer->pulse.answered >= ALONE_SECONDS;
 }
 
 static bool unsure(const fio_streamer *streamer) {

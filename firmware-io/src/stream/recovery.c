@@ -117,6 +117,8 @@ void fio_recovery_resend(fio_streamer *streamer, int64_t number) {
         return;
     }
     recovery->doubts = 0;
+    recovery->stalls = 0;
+    recovery->stall = FIO_STALL_SECONDS;
     if (agreed)
         fio_history_accept(streamer, number - 1);
     if (recovery->waiting && number == recovery->line) {
@@ -147,7 +149,7 @@ static double owed_since(const fio_streamer *streamer) {
         return INFINITY;
     const fio_sent_line *line = &streamer->lines[(streamer->answered + 1) & (FIO_HISTORY - 1)];
     double since = fmax(line->time, recovery->progress);
-    if (streamer->pulse.busy <= line->time || !isfinite(line->time))
+    if (streamer->pulse.busy <= fmax(line->time, streamer->pulse.answered) || !isfinite(line->time))
         return since;
     double beat = streamer->firmware.busy_seconds > 0 ? streamer->firmware.busy_seconds : 2;
     return fmax(since,

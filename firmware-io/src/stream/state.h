@@ -27,7 +27,7 @@ enum {
 #define FIO_STALL_PACED 2.5    /* … at most, where oks come slowly anyway */
 #define FIO_STALL_MOST 8.0     /* the same, after having asked in vain */
 #define FIO_STALL_LONG 5.0     /* … where what is under way may take long, and in the end */
-#define FIO_STALL_RARE 60.0
+#define FIO_STALL_RARE 16.0
 #define FIO_PLAIN_SECONDS                                                                          \
     60.0                         /* silence during usual commands, of a firmware with no heartbeat \
                                   */
@@ -149,7 +149,6 @@ struct fio_streamer {
     fio_source_command pending;
     bool has_pending, source_ended, source_dry;
     double dry_since;
-    bool source_failed;
     int64_t skip, skip_start; /* commands before `skip` are not sent; from where on they count */
     int64_t job_sent;
 
@@ -219,7 +218,7 @@ bool fio_feed(fio_streamer *streamer);
 
 /* queue.c */
 bool fio_queue_command(fio_streamer *streamer, const char *text, size_t length);
-void fio_queue_text(fio_streamer *streamer, const char *text); /* commands parted by '\n' */
+void fio_queue_text(fio_streamer *streamer, const char *text);    /* commands parted by '\n' */
 void fio_queue_restore(fio_streamer *streamer, const char *text); /* what it knows of this */
 void fio_queue_await(fio_streamer *streamer); /* a marker; step follows once it is executed */
 void fio_queue_clear(fio_streamer *streamer);

@@ -5,7 +5,7 @@
 
 /* After so many stalls in sequence what seems to be in the firmware's way was surely lost: at once
  * if it is nothing that takes time, late if it may take long. */
-enum { STALLS_MANY = 1, STALLS_MOVING = 4, STALLS_LONG = 9 };
+enum { STALLS_MANY = 1, STALLS_MOVING = 2, STALLS_LONG = 9 };
 
 enum { BYTES_LEAST = 63 }; /* that the smallest receive buffers hold */
 
@@ -18,17 +18,25 @@ int64_t fio_window_lines(const fio_streamer *streamer) {
     return streamer->cursor - 1 - streamer->answered;
 }
 
+/* Of what is surely in the firmware's queue nothing is in its receive buffer, answered or not. */
+static int64_t first_in_buffer(const fio_streamer *streamer) {
+    return 1 + (streamer->accepted > streamer->answered ? streamer->accepted : streamer->answered);
+}
+
 int64_t fio_window_bytes(const fio_streamer *streamer) {
-    if (streamer->cursor - 1 <= streamer->answered)
+    int64_t first = first_in_buffer(streamer);
+    if (streamer->cursor <= first)
         return 0;
-    return end_of(streamer, streamer->cursor - 1) - streamer->answered_end;
+    return end_of(streamer, streamer->cursor - 1) - end_of(streamer, first - 1);
 }
 
 /* The oldest line has left the receive buffer, or will have before anything more arrives, when the
  * firmware is at work on it: a probe may take its place. */
 static int64_t bytes_behind_oldest(const fio_streamer *streamer) {
-    int64_t oldest = end_of(streamer, streamer->answered + 1) - streamer->answered_end;
-    return fio_window_bytes(streamer) - oldest;
+    int64_t first = first_in_buffer(streamer);
+    if (streamer->cursor <= first || first > streamer->answered + 1)
+        return fio_window_bytes(streamer);
+    return end_of(streamer, streamer->cursor - 1) - end_of(streamer, first);
 }
 
 static int stalls_enough(const fio_streamer *streamer) {
