@@ -103,10 +103,12 @@ fio_status fio_resumption_check(fio_resumption *resumption, const fio_arguments 
         return FIO_OK;
     fio_status status = name_journal(resumption, arguments);
     const char *path = resumption->journal_path;
-    if (status != FIO_OK || stat(path, &about) != 0 || about.st_size == 0)
+    if (status != FIO_OK || stat(path, &about) != 0)
         return status;
-    if (!S_ISREG(about.st_mode))
-        return fio_fail(FIO_USAGE, "%s: not a file that a journal could be", path);
+    if (!S_ISREG(about.st_mode)) /* it is replaced by renaming: no device must be */
+        return fio_fail(FIO_NOT_WRITTEN, "%s: not a file that a journal could be", path);
+    if (about.st_size == 0)
+        return FIO_OK;
     if (fio_journal_read(path, &earlier, &where) != FIO_OK)
         return ends_as_journal(path)
                    ? FIO_OK /* one that never got to its first record */

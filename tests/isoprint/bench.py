@@ -71,6 +71,10 @@ class Bench(unittest.TestCase):
     def printer(self, *options):
         """A printer on a pseudo terminal; returns its port. self.printed() ends it."""
         link = self.at / "printer"
+        if hasattr(self, "process"):
+            self.process.kill()
+            self.process.wait()
+            link.unlink(missing_ok=True)
         # its summary and its own verdict go to files: pipes that nobody reads could fill up
         with open(self.at / "summary", "wb") as summary:
             self.process = subprocess.Popen(

@@ -333,7 +333,12 @@ class Resuming(Running):
         self.assertFalse((self.at / "part.gcode.journal").exists())
         self.fails(7, "none/j", "part.gcode", "--journal", "none/j", "--port", "virtual")
         (self.at / "part.gcode.journal").mkdir()
-        self.fails(2, "part.gcode.journal", "part.gcode", "--port", "virtual")
+        self.fails(7, "part.gcode.journal", "part.gcode", "--port", "virtual")
+
+    def test_a_journal_replaces_no_device(self):
+        os.mkfifo(self.at / "device")
+        self.fails(7, "device", "part.gcode", "--journal", "device", "--port", "virtual")
+        self.assertTrue((self.at / "device").is_fifo())
 
     def test_from_a_line(self):
         lines = self.text.splitlines()
