@@ -27,7 +27,7 @@ enum {
 #define FIO_STALL_PACED 2.5    /* … at most, where oks come slowly anyway */
 #define FIO_STALL_MOST 8.0     /* the same, after having asked in vain */
 #define FIO_STALL_LONG 5.0     /* … where what is under way may take long, and in the end */
-#define FIO_STALL_RARE 16.0
+#define FIO_STALL_RARE 30.0
 #define FIO_PLAIN_SECONDS                                                                          \
     60.0                         /* silence during usual commands, of a firmware with no heartbeat \
                                   */
