@@ -51,12 +51,17 @@ static void release_urb(fio_umockdev *mock, mock_urb *urb) {
     g_free(urb);
 }
 
-/* umockdev's nodes are regular files, at which poll() never waits: libusb would turn round and
- * round. A FIFO can be made to look full instead. */
-static bool replace_node(fio_umockdev *mock) {
+static char *node_path(const fio_umockdev *mock) {
     char *root = umockdev_testbed_get_root_dir(mock->testbed);
     char *path = g_build_filename(root, mock->node, NULL);
     g_free(root);
+    return path;
+}
+
+/* umockdev's nodes are regular files, at which poll() never waits: libusb would turn round and
+ * round. A FIFO can be made to look full instead. */
+static bool replace_node(fio_umockdev *mock) {
+    char *path = node_path(mock);
     bool done = unlink(path) == 0 && mkfifo(path, 0666) == 0;
     mock->gate = done ? open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC) : -1;
     done = mock->gate >= 0 && fcntl(mock->gate, F_SETPIPE_SZ, 4096) >= 0 &&
@@ -315,6 +320,9 @@ static void name_node(fio_umockdev *mock, int number) {
 }
 
 static void take_away(fio_umockdev *mock) {
+    char *path = node_path(mock);
+    unlink(path); /* umockdev itself would leave it */
+    g_free(path);
     umockdev_testbed_uevent(mock->testbed, sys_path, "remove");
     umockdev_testbed_remove_device(mock->testbed, sys_path);
     umockdev_testbed_detach_ioctl(mock->testbed, mock->node, NULL);
