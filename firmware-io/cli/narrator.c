@@ -341,6 +341,13 @@ void fio_narrator_end(fio_narrator *narrator, fio_status status, const fio_strea
     }
     if (!narrator->has_job || !report)
         return;
+    bool hot = report->resume.track.bed > 0;
+    for (int i = 0; i < FIO_TRACK_TOOLS; i++)
+        hot = hot || report->resume.track.nozzle[i] > 0;
+    if (hot && !report->heaters_off && !narrator->upload)
+        fio_screen_say(&narrator->screen,
+                       "the job has left heaters on; --heaters-off switches them "
+                       "off at its end");
     char bytes[64];
     fio_text text = fio_text_in(bytes, sizeof bytes);
     fio_progress_duration(&text, narrator->now - narrator->start);

@@ -178,6 +178,8 @@ class Printing(Bench):
 
     def test_heaters_off_at_the_end_of_a_job_that_leaves_them_on(self):
         (self.at / "hot.gcode").write_text("G28\nM104 S60\nM140 S40\nG1 X10 F6000\n")
+        self.assertIn(b"left heaters on", self.virtual("hot.gcode").stderr)
+        self.assertNotIn(b"left heaters on", self.virtual("part.gcode").stderr)
         self.run_it("hot.gcode", "--port", self.printer("--speed", "instant"), "--heaters-off", "-q")
         self.assertEqual(0, self.printed()["fault_count"])
 

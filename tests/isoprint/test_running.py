@@ -4,6 +4,7 @@ import fcntl
 import os
 import random
 import re
+import resource
 import signal
 import subprocess
 import termios
@@ -339,6 +340,15 @@ class Resuming(Running):
         os.mkfifo(self.at / "device")
         self.fails(7, "device", "part.gcode", "--journal", "device", "--port", "virtual")
         self.assertTrue((self.at / "device").is_fifo())
+
+    def test_a_journal_that_can_not_be_kept_is_removed(self):
+        """It would not know of later lines: going on from it would leave commands out."""
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
+        port = self.printer("--speed", "instant")
+        error = self.run_it("part.gcode", "--port", port, preexec_fn=limit).stderr.decode()
+        self.assertIn("the journal is no longer kept", error)
+        self.assertEqual(self.job, executed(self.at / "executed"))
+        self.assertFalse((self.at / "part.gcode.journal").exists())
 
     def test_from_a_line(self):
         lines = self.text.splitlines()
