@@ -53,7 +53,7 @@ static void test_what_is_visible(void) {
     fio_utf8_visible(&text,
                      "a\tb\x1b[2J\xc2\x9b"
                      "c\xff\xc3\xa9",
-                     14);
+                     13);
     CHECK(!strcmp("a b?[2J?c?\xc3\xa9", bytes));
     text = fio_text_in(bytes, sizeof bytes);
     fio_utf8_escaped(&text, "\\\x1b\xc3 ~", 5);
