@@ -167,7 +167,8 @@ void fio_resumption_mark(fio_resumption *resumption, const fio_stream_resume *re
     char text[700];
     snprintf(text, sizeof text, "the journal is no longer kept: %s", fio_error_message());
     fio_narrator_warn(narrator, text);
-    fio_journal_close(resumption->journal, false);
+    /* What goes out from here on would be missing in it: going on from it would skip commands. */
+    fio_journal_close(resumption->journal, true);
     resumption->journal = NULL;
 }
 
