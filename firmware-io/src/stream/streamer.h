@@ -128,7 +128,7 @@ typedef struct fio_stream_report {
     double nozzle, nozzle_target, bed, bed_target;
     int percent, minutes_left; /* of M73 in the job; -1 */
     bool heaters_off;          /* confirmed by the firmware after the end */
-    fio_stream_resume resume;
+    fio_stream_resume resume;  /* valid at the end; until then see FIO_STREAM_MARK */
 } fio_stream_report;
 
 fio_stream_options fio_stream_options_defaults(void);
