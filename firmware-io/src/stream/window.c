@@ -98,6 +98,12 @@ void fio_window_set(fio_streamer *streamer, int64_t answered) {
     streamer->answered = answered;
 }
 
+/* Repetier says ok when a line has a place in its queue: so many before it may still be there. */
+static int64_t early_oks(const fio_streamer *streamer) {
+    const fio_firmware *firmware = &streamer->firmware;
+    return firmware->kind == FIO_FIRMWARE_REPETIER ? firmware->usual_command_slots : 0;
+}
+
 /* An ok that names its line: believed if it agrees with the count, or with the one before it, since
  * a bit of the number may be wrong. */
 static void take_numbered(fio_streamer *streamer, int64_t number) {
@@ -106,7 +112,9 @@ static void take_numbered(fio_streamer *streamer, int64_t number) {
     bool agrees = number == streamer->answered + 1 || number == streamer->claimed + 1;
     streamer->claimed = number;
     if (agrees)
-        fio_history_execute(streamer, number);
+        fio_history_accept(streamer, number);
+    if (agrees)
+        fio_history_execute(streamer, number - early_oks(streamer));
     if (number > streamer->answered)
         fio_window_set(streamer, number);
 }
