@@ -42,15 +42,25 @@ typedef struct found_firmware {
 
 static void on_event(void *context, const fio_stream_event *event) {
     found_firmware *found = context;
-    fio_text text = fio_text_in(found->name, found->size);
-    if (event->kind == FIO_STREAM_FIRMWARE) {
-        fio_text_string(&text, event->firmware->name);
-        found->found = true;
-    } else if (event->kind == FIO_STREAM_ANSWER && event->answer->kind == FIO_ANSWER_FIRMWARE) {
-        const char *name = event->answer->rest, *end = strstr(name, " SOURCE_CODE_URL");
-        fio_utf8_visible(&text, name, end ? (size_t)(end - name) : strlen(name));
-        found->found = true;
+    const char *name = NULL;
+    size_t length = 0;
+    if (event->kind == FIO_STREAM_ANSWER && event->answer->kind == FIO_ANSWER_FIRMWARE) {
+        name = event->answer->rest;
+        static const char key[] = "FIRMWARE_NAME:";
+        if (!strncmp(name, key, sizeof key - 1))
+            name += sizeof key - 1 + strspn(name + sizeof key - 1, " ");
+        const char *end = strstr(name, " SOURCE_CODE_URL");
+        end = end ? end : strstr(name, " PROTOCOL_VERSION");
+        length = end ? (size_t)(end - name) : strlen(name);
+    } else if (event->kind == FIO_STREAM_FIRMWARE && !found->found) {
+        name = event->firmware->name;
+        length = strlen(name);
     }
+    if (!name)
+        return;
+    fio_text text = fio_text_in(found->name, found->size);
+    fio_utf8_visible(&text, name, length);
+    found->found = true;
 }
 
 /* Once it has answered, or a signal wants the end. */

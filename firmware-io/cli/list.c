@@ -10,7 +10,7 @@ static const double probe_seconds = 5;
 
 /* What is behind it, or why that is not known. */
 static fio_status probe(char *firmware, size_t size, const fio_port *port,
-                        const fio_arguments *arguments) {
+                        const fio_arguments *arguments, fio_narrator *narrator) {
     fio_transport *transport;
     fio_port_options options = fio_port_options_defaults();
     options.rate = arguments->baud > 0 ? arguments->baud : options.rate;
@@ -23,8 +23,12 @@ static fio_status probe(char *firmware, size_t size, const fio_port *port,
         status = fio_connection_probe(transport, options.rate, probe_seconds, firmware, size);
         fio_transport_close(transport);
     }
-    if (status != FIO_OK)
+    if (status == FIO_CANCELLED)
+        return status;
+    if (status != FIO_OK) {
         firmware[0] = 0;
+        fio_screen_say(&narrator->screen, "%s: %s", port->name, fio_error_message());
+    }
     return FIO_OK;
 }
 
@@ -86,7 +90,7 @@ static fio_status print_ports(const fio_port *ports, int count, const fio_argume
     for (int i = 0; i < count; i++) {
         char firmware[128] = "";
         if (arguments->probe && ports[i].allowed) {
-            fio_status status = probe(firmware, sizeof firmware, &ports[i], arguments);
+            fio_status status = probe(firmware, sizeof firmware, &ports[i], arguments, narrator);
             if (status != FIO_OK)
                 return status;
         }

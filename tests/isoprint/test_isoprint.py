@@ -6,7 +6,7 @@ import resource
 import subprocess
 import threading
 
-from bench import LONG, PROGRAM, ROOT, Bench, commands, events, executed, main
+from bench import LONG, PRINTER, PROGRAM, ROOT, Bench, commands, events, executed, main
 
 FLAGS = (ROOT / "firmware-io/cli/flags.inl").read_text()
 
@@ -404,6 +404,24 @@ class Card(Bench):
         done = self.run_it("--list", "--json")
         for event in events(done.stdout.decode())[:-1]:
             self.assertEqual("port", event["event"])
+
+    def test_list_asks_for_the_firmware(self):
+        """A board on USB, if there is a way to play one here."""
+        if os.environ.get("ISOPRINT_SANITIZED") == "1":
+            self.skipTest("tests/usb does it with sanitizers")
+        play = [PRINTER, "--usb", "ch340", "--quiet", "--speed", "instant", "--"]
+        if subprocess.run([*play, "true"], capture_output=True, timeout=LONG).returncode != 0:
+            self.skipTest("no umockdev")
+        done = subprocess.run([*play, PROGRAM, "--list", "--probe"], capture_output=True, timeout=LONG)
+        self.assertEqual(0, done.returncode, done.stderr.decode())
+        row = done.stdout.decode().splitlines()[1]
+        self.assertRegex(row, r"^usb:1a86:7523\S* +CH340 +ch341 +Marlin 2\.1")
+        done = subprocess.run([*play, PROGRAM, "--list", "--probe", "--json"], capture_output=True,
+                              timeout=LONG)
+        found = events(done.stdout.decode())[0]
+        self.assertEqual(("CH340", 0x1a86, 0x7523, True),
+                         tuple(found[key] for key in ("board", "vendor", "product", "allowed")))
+        self.assertIn("Marlin", found["firmware"])
 
 
 if __name__ == "__main__":
