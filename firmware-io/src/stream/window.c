@@ -7,7 +7,8 @@
  * if it is nothing that takes time, late if it may take long. */
 enum { STALLS_MANY = 1, STALLS_MOVING = 2, STALLS_LONG = 9 };
 
-enum { BYTES_LEAST = 63 }; /* that the smallest receive buffers hold */
+enum { BYTES_LEAST = 63 };      /* that the smallest receive buffers hold */
+enum { UNNUMBERED_LEAST = 4 }; /* oks in sequence without numbers, where others have them */
 
 static int64_t end_of(const fio_streamer *streamer, int64_t number) {
     const fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
@@ -134,4 +135,9 @@ void fio_window_answer(fio_streamer *streamer, const fio_answer *answer) {
     fio_marker_answered(streamer, answer);
     if (streamer->plain)
         fio_history_execute(streamer, streamer->answered);
+    /* Repetier built so that its oks have no numbers tells nothing else that could be believed; a
+     * line that was not numbered any more is asked for at the next one. */
+    int64_t early = early_oks(streamer);
+    if (early > 0 && streamer->answered > streamer->claimed + UNNUMBERED_LEAST)
+        fio_history_execute(streamer, streamer->answered - early);
 }
