@@ -350,12 +350,12 @@ static void test_colons_for_repetier(void) {
     dialogue_end(d);
 }
 
-/* Repetier built without ACK_WITH_LINENUMBER: an ok as soon as a line is read, the temperatures
- * later on a line of their own, as those are which M109 tells while it heats. */
-static void test_repetier_without_numbers_in_its_oks(void) {
+/* An ok as soon as a line is read, the temperatures later on a line of their own, as those are
+ * which M109 tells while it heats: Repetier built without ACK_WITH_LINENUMBER, and others like it.
+ */
+static void print_without_markers(const char *name) {
     dialogue *d = dialogue_begin(NULL, "G90\nG1 X1\nM109 S200\nG1 X2\nG1 X3\n", NULL);
     int moves_seen = 0;
-    double heated = 0;
     for (int i = 0; i < 600 && dialogue_report(d)->state != FIO_STREAM_DONE; i++) {
         char command[600];
         snprintf(command, sizeof command, "%s", take_command(d));
@@ -366,10 +366,8 @@ static void test_repetier_without_numbers_in_its_oks(void) {
         say(d, "ok");
         moves_seen += !strncmp(command, "G1", 2);
         if (!strcmp(command, "M115"))
-            say(d, "FIRMWARE_NAME:Repetier_1.0.4 PROTOCOL_VERSION:1.0 MACHINE_TYPE:Mendel");
-        if (!strncmp(command, "M109", 4))
-            heated = d->now + 20;
-        while (d->now < heated && !strncmp(command, "M109", 4)) {
+            say(d, name);
+        for (int s = 0; s < 20 && !strncmp(command, "M109", 4); s++) {
             pass(d, 1);
             say(d, "T:100.00 /200 B:20.00 /0 B@:0 @:0");
         }
@@ -379,7 +377,14 @@ static void test_repetier_without_numbers_in_its_oks(void) {
     CHECK_EQUAL(3, moves_seen);
     CHECK_EQUAL(FIO_STREAM_DONE, dialogue_report(d)->state);
     CHECK_EQUAL(FIO_OK, dialogue_report(d)->status);
+    CHECK(d->now < 140);
     dialogue_end(d);
+}
+
+static void test_firmwares_that_answer_no_marker(void) {
+    print_without_markers("FIRMWARE_NAME:Repetier_1.0.4 PROTOCOL_VERSION:1.0 MACHINE_TYPE:Mendel");
+    print_without_markers("FIRMWARE_NAME:Teacup FIRMWARE_URL:http://github.com/x PROTOCOL_VERSION");
+    print_without_markers("echo:Unknown command: \"M115\"");
 }
 
 int main(void) {
@@ -396,6 +401,6 @@ int main(void) {
     RUN(test_heaters_after_a_disconnect);
     RUN(test_lines_asked_for_after_their_execution);
     RUN(test_colons_for_repetier);
-    RUN(test_repetier_without_numbers_in_its_oks);
+    RUN(test_firmwares_that_answer_no_marker);
     return check_verdict();
 }

@@ -7,8 +7,9 @@
  * if it is nothing that takes time, late if it may take long. */
 enum { STALLS_MANY = 1, STALLS_MOVING = 2, STALLS_LONG = 9 };
 
-enum { BYTES_LEAST = 63 };      /* that the smallest receive buffers hold */
+enum { BYTES_LEAST = 63 };     /* that the smallest receive buffers hold */
 enum { UNNUMBERED_LEAST = 4 }; /* oks in sequence without numbers, where others have them */
+enum { UNSURE_OKS = 2 };       /* the last ones, which may be of lines that wait or were lost */
 
 static int64_t end_of(const fio_streamer *streamer, int64_t number) {
     const fio_sent_line *line = &streamer->lines[number & (FIO_HISTORY - 1)];
@@ -31,12 +32,17 @@ int64_t fio_window_bytes(const fio_streamer *streamer) {
     return end_of(streamer, streamer->cursor - 1) - end_of(streamer, first - 1);
 }
 
-/* The oldest line has left the receive buffer, or will have before anything more arrives, when the
- * firmware is at work on it: a probe may take its place. */
-static int64_t bytes_behind_oldest(const fio_streamer *streamer) {
+/* When nothing comes any more the firmware is at the first line that takes time: that one has left
+ * the receive buffer, as have those before it, whose oks were lost. A probe may take their place.
+ */
+static int64_t bytes_behind_work(const fio_streamer *streamer) {
+    const unsigned takes_time = FIO_COMMAND_LONG | FIO_COMMAND_USER | FIO_COMMAND_MOVES;
     int64_t first = first_in_buffer(streamer);
     if (streamer->cursor <= first || first > streamer->answered + 1)
         return fio_window_bytes(streamer);
+    while (first < streamer->cursor - 1 &&
+           !(streamer->lines[first & (FIO_HISTORY - 1)].traits & takes_time))
+        first++;
     return end_of(streamer, streamer->cursor - 1) - end_of(streamer, first);
 }
 
@@ -66,7 +72,7 @@ bool fio_window_open(const fio_streamer *streamer, size_t length) {
     else if (!told && streamer->firmware.kind == FIO_FIRMWARE_GRBL)
         most_lines = INT64_MAX / 2; /* it counts characters alone */
     if (streamer->recovery.allow_one) {
-        int64_t behind = bytes_behind_oldest(streamer);
+        int64_t behind = bytes_behind_work(streamer);
         bool fits = behind + (int64_t)length <= (most_bytes > 0 ? most_bytes : BYTES_LEAST);
         return fits || (behind == 0 && most_bytes <= 0) ||
                streamer->recovery.stalls > stalls_enough(streamer);
@@ -105,6 +111,18 @@ static int64_t early_oks(const fio_streamer *streamer) {
     return firmware->kind == FIO_FIRMWARE_REPETIER ? firmware->usual_command_slots : 0;
 }
 
+/* Repetier built so that its oks have no numbers, and firmwares that tell temperatures on lines of
+ * their own, say nothing else that could be believed; a line whose number was lost is asked for at
+ * the next one. */
+static void believe_oks(fio_streamer *streamer) {
+    bool repetier = streamer->firmware.kind == FIO_FIRMWARE_REPETIER;
+    bool mute = streamer->firmware.kind == FIO_FIRMWARE_UNKNOWN && !streamer->echoes &&
+                streamer->temperatures_told == 0;
+    if (!streamer->plain && (repetier || mute) &&
+        streamer->answered > streamer->claimed + UNNUMBERED_LEAST)
+        fio_history_execute(streamer, streamer->answered - UNSURE_OKS);
+}
+
 /* An ok that names its line: believed if it agrees with the count, or with the one before it, since
  * a bit of the number may be wrong. */
 static void take_numbered(fio_streamer *streamer, int64_t number) {
@@ -135,9 +153,5 @@ void fio_window_answer(fio_streamer *streamer, const fio_answer *answer) {
     fio_marker_answered(streamer, answer);
     if (streamer->plain)
         fio_history_execute(streamer, streamer->answered);
-    /* Repetier built so that its oks have no numbers tells nothing else that could be believed; a
-     * line that was not numbered any more is asked for at the next one. */
-    int64_t early = early_oks(streamer);
-    if (early > 0 && streamer->answered > streamer->claimed + UNNUMBERED_LEAST)
-        fio_history_execute(streamer, streamer->answered - early);
+    believe_oks(streamer);
 }
