@@ -64,7 +64,8 @@ void print_job_make(print_job *job, uint64_t seed, int moves) {
     static const char *const tail[] = {"M104 S0", "M140 S0", "M107", "G1 X1 Z20 F600", "M84"};
     print_random random = {seed};
     double e = 0, step = 0.02 + 0.2 * print_random_unit(&random);
-    if (print_random_below(&random, 4) == 0)
+    job->tiny = print_random_below(&random, 4) == 0;
+    if (job->tiny)
         step *= 0.02; /* so short that the wire is what holds the print up */
     job->count = 0;
     for (size_t i = 0; i < sizeof head / sizeof *head; i++)

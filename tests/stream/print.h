@@ -26,6 +26,8 @@ typedef struct print_job {
     char commands[PRINT_COMMANDS][PRINT_TEXT];
     char *text; /* of the file, with comments and blank lines */
     size_t length;
+    bool
+        tiny; /* moves of less than makes a block of the planner sure: what is made can't be told */
 } print_job;
 
 /* Heats, homes, moves about for `moves` commands, cools. */
