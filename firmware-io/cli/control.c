@@ -140,16 +140,23 @@ static int descriptors(void *context, struct pollfd *polls, int most) {
     return count + fio_narrator_descriptors(control->narrator, polls + count);
 }
 
-static void woken(void *context, double now, const struct pollfd *polls, int count) {
-    fio_control *control = context;
-    (void)polls; /* all of them are read without waiting */
-    (void)count;
+static void take_input(fio_control *control, double now) {
     if (control->job)
         fio_job_look(control->job);
     for (int number; (number = fio_signals_next()) != 0;)
         take_signal(control, number, now);
     for (int key; control->job && (key = fio_terminal_key()) != 0;)
         take_key(control, key, now);
+    fio_narrator_flush(control->narrator);
+}
+
+static void woken(void *context, double now, const struct pollfd *polls, int count) {
+    fio_control *control = context;
+    bool any = false;
+    for (int i = 0; i < count; i++)
+        any = any || polls[i].revents != 0;
+    if (any) /* all of them are read without waiting */
+        take_input(control, now);
     if (control->console && listens(control) && !control->cancelled &&
         fio_console_feed(control->console, control->streamer, now) != FIO_OK)
         fio_screen_say(&control->narrator->screen, "%s", fio_error_message());
@@ -157,7 +164,6 @@ static void woken(void *context, double now, const struct pollfd *polls, int cou
         control->narrator->temperatures = control->console->temperatures;
         control->narrator->reports = control->console->reports;
     }
-    fio_narrator_flush(control->narrator);
     fio_narrator_update(control->narrator, now, fio_streamer_report(control->streamer));
 }
 

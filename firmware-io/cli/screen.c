@@ -37,7 +37,7 @@ static void draw(fio_screen *screen) {
 }
 
 static void message(fio_screen *screen, const char *format, va_list arguments) {
-    char bytes[1024], whole[1152];
+    char bytes[4096], whole[4224];
     int length = vsnprintf(bytes, sizeof bytes, format, arguments);
     if (length < 0)
         return;
