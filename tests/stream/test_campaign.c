@@ -194,7 +194,7 @@ static void check_time(print_check *check, campaign_tally *tally, print_plan pla
     double lost = seconds - result.seconds;
     char detail[80];
     snprintf(detail, sizeof detail, "%.1f s for %lld faults", lost, (long long)faults);
-    if (lost > 3 + late + 0.3 * (double)faults)
+    if (lost > 5 + late + 0.3 * (double)faults)
         fail(check, "too slow to recover", detail);
     tally->timed_faults += faults;
     tally->lost_seconds += lost;

@@ -114,12 +114,12 @@ static void test_a_doubled_resend_makes_no_storm(void) {
             EXPECT_SILENCE(d);
     }
     const char *const again[] = {"M83", "G1 X1", "G1 X2", "G1 X3"};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) { /* one by one, now that lines are damaged */
         EXPECT_COMMAND(again[i], d);
         CHECK_EQUAL(first + 1 + i, d->number);
+        EXPECT_SILENCE(d);
+        say(d, "ok");
     }
-    EXPECT_SILENCE(d);
-    say(d, "ok");
     EXPECT_COMMAND("G1 X4", d);
     CHECK_EQUAL(4, dialogue_report(d)->repeats);
     dialogue_end(d);

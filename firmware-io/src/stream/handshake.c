@@ -257,8 +257,8 @@ static void repeat_last(fio_streamer *streamer) {
     }
     go_to(streamer, FIO_GREETING_LAST, ANSWER_SECONDS);
     if (streamer->raw_length > 0)
-        return; /* the link does not even take what was to be said before */
-    fio_queue_raw(streamer, "\n", 1);
+        return;                         /* the link does not even take what was to be said before */
+    fio_queue_raw(streamer, "\n\n", 2); /* half a line stands there: it must not get a tail */
     fio_recovery_provoke(streamer);
 }
 

@@ -22,6 +22,9 @@ enum {
     FIO_PROBLEM_MOST = 512 /* bytes of a message */
 };
 
+/* Lines after a Resend that go one by one: a firmware that throws away what it has received in the
+ * middle of a line that is just coming may take the rest of that for a command without a number. */
+#define FIO_CAREFUL_LINES 64
 #define FIO_MARKER_SECONDS 1.0 /* between two markers while lines are sent */
 #define FIO_STALL_SECONDS 0.6  /* an ok is overdue */
 #define FIO_STALL_PACED 2.5    /* … at most, where oks come slowly anyway */
@@ -81,7 +84,8 @@ typedef struct fio_recovery {
     double doubt_time;
     double stall, progress; /* s to wait; the last sign that lines are worked at */
     int stalls;
-    bool allow_one; /* line more than fits the window */
+    int64_t careful; /* up to this number lines go one by one */
+    bool allow_one;  /* line more than fits the window */
 } fio_recovery;
 
 typedef struct fio_pulse {

@@ -71,6 +71,8 @@ bool fio_window_open(const fio_streamer *streamer, size_t length) {
         most_lines = 1;
     else if (!told && streamer->firmware.kind == FIO_FIRMWARE_GRBL)
         most_lines = INT64_MAX / 2; /* it counts characters alone */
+    if (streamer->cursor < streamer->recovery.careful && most_lines > 1)
+        most_lines = 1;
     if (streamer->recovery.allow_one) {
         int64_t behind = bytes_behind_work(streamer);
         bool fits = behind + (int64_t)length <= (most_bytes > 0 ? most_bytes : BYTES_LEAST);
