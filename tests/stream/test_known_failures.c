@@ -60,10 +60,12 @@ static void test_the_line_asked_for_is_the_one_that_comes(void) {
             continue;
         refuse(d, "checksum mismatch", first + wanted - 1);
         say(d, "ok");
-        pass(d, 0.5);
         for (int i = wanted; i < 4; i++) {
+            pass_until_output(d, 1);
             const char *line = take(d);
-            CHECK(line && !strcmp(line, lines[i])); /* the same bytes, in their order */
+            if (!CHECK(line && !strcmp(line, lines[i]))) /* the same bytes, in their order */
+                fprintf(stderr, "    line %d of %d: %s\n", i, wanted, line ? line : "");
+            say(d, "ok");
         }
         dialogue_end(d);
     }

@@ -10,7 +10,7 @@
 #include "stream/state.h"
 
 #define DAMAGED_SECONDS 0.2 /* an answer was unreadable: it may be asked for so soon */
-enum { DAMAGED_MOST = 6 };
+enum { DAMAGED_MOST = 6, DWELLS_MOST = 8 };
 
 fio_stream_options fio_stream_options_defaults(void) {
     return (fio_stream_options){.rate = 115200, .report_seconds = 2, .lift = 2, .retract = 2};
@@ -200,13 +200,23 @@ static void hear_ok(fio_streamer *streamer, const fio_answer *answer) {
     fio_window_answer(streamer, answer);
 }
 
-/* grbl's status tells that nothing is left to do, so all oks are in, or lost. */
-static void hear_other(fio_streamer *streamer, const fio_answer *answer) {
-    if (streamer->plain && answer->length > 5 && !memcmp(answer->text, "<Idle", 5) &&
-        streamer->recovery.stalls > 0) {
-        fio_window_set(streamer, streamer->cursor - 1);
+/* grbl's status tells that nothing is left to do: what has no answer was lost, or its answer was.
+ * While it dwells it calls itself idle, too. */
+static void hear_idle(fio_streamer *streamer) {
+    bool is_long = fio_pulse_patience(streamer) > FIO_PLAIN_SECONDS;
+    if (streamer->recovery.stalls <= (is_long ? DWELLS_MOST : 0) || fio_window_lines(streamer) <= 0)
+        return;
+    fio_window_set(streamer, streamer->cursor - 1);
+    if (streamer->has_source && streamer->job_sent > 0 && !streamer->ending)
+        fio_end(streamer, FIO_LINK_LOST, false,
+                "a line got no answer, and this firmware does not tell whether it had it");
+    else
         fio_history_execute(streamer, streamer->answered);
-    }
+}
+
+static void hear_other(fio_streamer *streamer, const fio_answer *answer) {
+    if (streamer->plain && answer->length > 5 && !memcmp(answer->text, "<Idle", 5))
+        hear_idle(streamer);
     if (answer->kind == FIO_ANSWER_OTHER)
         hear_damaged(streamer);
     for (size_t i = 0; i < answer->length; i++)
