@@ -41,7 +41,10 @@ bool fio_recovery_holds(const fio_streamer *streamer) {
  * executes nothing. */
 void fio_recovery_provoke(fio_streamer *streamer) {
     char wire[FIO_WIRE_LINE_MOST + 1];
-    size_t length = fio_encode_line(wire, FIO_FAR_NUMBER, "M105", 4, FIO_WIRE_LINE_MOST);
+    int64_t number = FIO_FAR_NUMBER;
+    if (streamer->firmware.kind == FIO_FIRMWARE_REPETIER) /* it looks at 16 bits alone */
+        number += (streamer->next + 32768 - FIO_FAR_NUMBER) & 0xffff;
+    size_t length = fio_encode_line(wire, number, "M105", 4, FIO_WIRE_LINE_MOST);
     fio_queue_raw(streamer, wire, length);
 }
 
