@@ -107,7 +107,9 @@ void fio_recovery_resend(fio_streamer *streamer, int64_t number) {
     bool agreed = recovery->last_line >= 0 && recovery->last_line + 1 == number &&
                   streamer->now - recovery->last_time < AGREE_SECONDS;
     /* Who tells no last line is believed when asking twice brings the same number. */
-    agreed = agreed || (recovery->last_line < 0 && number == recovery->told);
+    bool terse = streamer->firmware.kind == FIO_FIRMWARE_SMOOTHIE ||
+                 streamer->firmware.kind == FIO_FIRMWARE_REPETIER;
+    agreed = agreed || (terse && recovery->last_line < 0 && number == recovery->told);
     recovery->told = number;
     recovery->last_line = -1;
     streamer->report.resends++;
