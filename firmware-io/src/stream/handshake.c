@@ -12,7 +12,7 @@
 #define ANSWER_SECONDS 1.0
 #define GREETING_SECONDS 20.0
 #define UPLOAD_SECONDS 8.0
-enum { ATTEMPTS_MOST = 10, LAST_ATTEMPTS = 5, OBEYED_LEAST = 3, NAME_ATTEMPTS = 3 };
+enum { ATTEMPTS_MOST = 10, LAST_ATTEMPTS = 5, OBEYED_LEAST = 3, NAME_ATTEMPTS = 6 };
 
 static void go_to(fio_streamer *streamer, fio_greeting greeting, double seconds) {
     streamer->greeting = greeting;
