@@ -112,6 +112,8 @@ void fio_end(fio_streamer *streamer, fio_status status, bool renumber, const cha
     if (streamer->state == FIO_STREAM_DONE || streamer->emergency)
         return;
     bool again = streamer->ending;
+    if (again && !renumber && status == FIO_CANCELLED)
+        return; /* a printer that says so with every answer would have it begin anew for ever */
     if (!again) {
         va_start(values, format);
         say_why(streamer, status, format, values);
