@@ -338,6 +338,25 @@ static void test_answers_lost_doubled_and_late(void) {
         CHECK(stopped[i] <= (i == REPRAP || i == GRBL ? 8 : 1));
 }
 
+/* The first answers of all; Klipper's name comes with one of them. */
+static void test_answers_lost_in_the_greeting(void) {
+    for (int i = 0; i < SPEAKERS; i++)
+        for (int ok = 1; ok <= 6; ok++) {
+            char script[40];
+            make_job(&speakers[i], 20, 1);
+            snprintf(script, sizeof script, "at ok %d lose ok", ok);
+            job_plan plan = usual(&speakers[i]);
+            plan.machine.script = script;
+            printing *p = print(&speakers[i], &plan);
+            check_count++;
+            if (p->status == FIO_OK ? p->next != job_commands || p->wrong > 0 : i < REPRAP)
+                fail(p, script, p->message);
+            if (p->status != FIO_OK && p->next == 0)
+                fail(p, script, p->message);
+            done(p);
+        }
+}
+
 static void test_flipped_bits_where_lines_are_counted(void) {
     for (int i = 0; i < SPEAKERS; i++)
         for (uint64_t seed = 1; seed <= 8 && speakers[i].counts; seed++) {
@@ -571,6 +590,7 @@ int main(int count, char **arguments) {
     verbose = count > 2 && !strcmp(arguments[1], "--verbose") ? arguments[2] : NULL;
     RUN(test_a_job_is_printed_once_on_each);
     RUN(test_answers_lost_doubled_and_late);
+    RUN(test_answers_lost_in_the_greeting);
     RUN(test_flipped_bits_where_lines_are_counted);
     RUN(test_pause_and_resume);
     RUN(test_cancel_switches_off);

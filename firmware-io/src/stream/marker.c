@@ -117,6 +117,10 @@ bool fio_marker_hear(fio_streamer *streamer, const fio_answer *answer) {
 /* RepRapFirmware passes over what is damaged without a word: a line without an ok may be one whose
  * answer was lost, or one that was never executed. */
 static bool lost_unseen(fio_streamer *streamer, int64_t marker) {
+    bool greeting =
+        streamer->state == FIO_STREAM_GREETING && streamer->greeting != FIO_GREETING_RESTORE;
+    if (greeting || !streamer->firmware.numbered)
+        return false; /* what is asked there is asked again */
     for (int64_t n = streamer->executed + 1; n < marker && !streamer->ending; n++) {
         const fio_sent_line *line = fio_history_line(streamer, n);
         if (!line || line->marker)
