@@ -156,7 +156,8 @@ static void test_ftdi_with_two_ports(void) {
     CHECK_EQUAL(FIO_OK, serial.driver->open(&serial, 115200, true));
     CHECK_SEEN(&device, ((const seen_request[]){
                             {0x40, 0, 0, 1, 0, {0}},
-                            {0x40, 9, 1, 1, 0, {0}},
+                            {0x40, 9, 16, 1, 0, {0}},
+                            {0x40, 6, 0x010a, 1, 0, {0}},
                             {0x40, 4, 8, 1, 0, {0}},
                             {0x40, 3, 0xc068, 0x0201, 0, {0}}, /* 104 + 1/8, by 12 MHz */
                             {0x40, 2, 0, 1, 0, {0}},

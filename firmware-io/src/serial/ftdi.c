@@ -12,9 +12,11 @@ enum {
     SET_FLOW = 2,
     SET_RATE = 3,
     SET_DATA = 4,
+    SET_EVENT = 6,
     SET_LATENCY = 9,
     EIGHT_BITS = 0x0008,
-    LATENCY = 1, /* ms that a bridge waits for more before it sends what it has */
+    LATENCY = 16,            /* ms that a bridge waits for more before it sends what it has */
+    LINE_END = 0x100 | '\n', /* but not behind this byte: FTDI's AN232B-04 */
     DTR_OFF = 0x0100,
     RTS_OFF = 0x0200,
     DTR_ON = 0x0101,
@@ -112,6 +114,8 @@ static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
     fio_status status = set(serial, RESET, 0, channel);
     if (status == FIO_OK && serial->chip != CHIP_A) /* which has no such timer */
         status = set(serial, SET_LATENCY, LATENCY, channel);
+    if (status == FIO_OK)
+        status = set(serial, SET_EVENT, LINE_END, channel);
     if (status == FIO_OK)
         status = set(serial, SET_DATA, EIGHT_BITS, channel);
     if (status == FIO_OK)

@@ -54,6 +54,7 @@ struct fio_virtual_usb {
     int outgoing_size, incoming_size;
     bool last_was_full;
     double latency, status_due; /* s */
+    int event;                  /* a byte behind which it does not wait; -1 */
     bool refused;               /* a status packet was asked for and not due yet */
 };
 

@@ -8,6 +8,7 @@ enum {
     SET_RATE,
     SET_DATA,
     GET_MODEM,
+    SET_EVENT,
     SET_LATENCY = 9,
     GET_LATENCY = 10,
     READ_EEPROM = 0x90,
@@ -48,6 +49,9 @@ static int write_request(fio_virtual_usb *device, double now, const fio_setup *s
         return 0;
     case SET_DATA:
         device->ready = (setup->value & 0x7fff) == 8;
+        return 0;
+    case SET_EVENT:
+        device->event = setup->value & 0x100 ? setup->value & 0xff : -1;
         return 0;
     case SET_LATENCY:
         if (setup->value < 1 || setup->value > 255)

@@ -107,6 +107,7 @@ static void power_up(fio_virtual_usb *device) {
     device->in_halted = device->out_halted = device->last_was_full = device->refused = false;
     device->outgoing_size = device->incoming_size = 0;
     device->latency = 0.016;
+    device->event = -1;
 }
 
 fio_status fio_virtual_usb_create(fio_virtual_usb **made, fio_machine *machine,
@@ -340,9 +341,12 @@ static void pull(fio_virtual_usb *device, double now) {
             device->machine, now, device->incoming + device->incoming_size, (size_t)room);
 }
 
-/* A full packet at once, what there is when the latency timer ends, be it nothing. */
+/* A full packet at once, one with the byte to tell as well; what there is when the latency timer
+ * ends, be it nothing. */
 static int status_packet(fio_virtual_usb *device, double now, uint8_t *bytes) {
-    bool full = device->incoming_size == device->chip->packet - STATUS_BYTES;
+    bool full = device->incoming_size == device->chip->packet - STATUS_BYTES ||
+                (device->event >= 0 &&
+                 memchr(device->incoming, device->event, (size_t)device->incoming_size));
     device->refused = !full && now < device->status_due;
     if (device->refused)
         return FIO_USB_NAK;
