@@ -96,12 +96,16 @@ static void test_an_error_without_a_resend(void) {
              (long long)number - 1);
     say(d, text);
     CHECK(pass_until_output(d, 10) < 1);
-    CHECK(take(d) && d->number == number + 1); /* whatever it is: its number tells */
-    refuse(d, "Line Number is not Last Line Number+1", number - 1);
-    say(d, "ok");
-    CHECK(pass_until_output(d, 10) < 0.5);
-    EXPECT_COMMAND("G90", d);
+    CHECK(take(d) != NULL);
+    if (d->number > number) { /* not that line, so its number tells */
+        refuse(d, "Line Number is not Last Line Number+1", number - 1);
+        say(d, "ok");
+        CHECK(pass_until_output(d, 10) < 0.5);
+        EXPECT_COMMAND("G90", d);
+    }
     CHECK_EQUAL(number, d->number);
+    say(d, "ok");
+    EXPECT_COMMAND("M83", d);
     dialogue_end(d);
 }
 
@@ -237,10 +241,10 @@ static void test_no_flood_while_it_levels(void) {
                 say(d, "echo:busy: processing");
             for (const char *line; (line = take(d)) != NULL;)
                 bytes += strlen(line) + 1;
-            if (second <= 200)
+            if (second <= 90)
                 CHECK(bytes <= 63);
         }
-        CHECK(bytes <= 400);
+        CHECK(bytes <= 500); /* one in half a minute */
         CHECK_EQUAL(FIO_STREAM_RUNNING, dialogue_report(d)->state);
         dialogue_end(d);
     }
