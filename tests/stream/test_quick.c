@@ -16,8 +16,8 @@ typedef struct quick {
     fio_source *source;
     double now;
     echo echoes;
-    bool cancels; /* wants the job cancelled, with every answer since the first move */
-    int markers, moves, heaters_off;
+    const char *nags; /* said before every answer since the first move */
+    int lines, markers, moves, heaters_off;
 } quick;
 
 static fio_source_result next(void *context, fio_source_command *command) {
@@ -65,8 +65,9 @@ static void answer_marker(quick *q, const char *text) {
 static void answer(quick *q, const char *line) {
     const char *command = strchr(line, ' ');
     int number = command ? atoi(command + 2) : 0;
-    if (q->cancels && q->moves > 0)
-        say(q, "//action:cancel\n");
+    if (q->nags && q->moves > 0)
+        say(q, q->nags);
+    q->lines++;
     q->heaters_off |= number == 104 ? 1 : number == 140 ? 2 : 0;
     if (command && command[1] == 'M' && number == 115)
         say(q, "FIRMWARE_NAME:Marlin quick\nok\n");
@@ -132,7 +133,7 @@ static void test_a_firmware_that_echoes_nothing_is_asked_for_its_temperatures(vo
 
 static void test_a_printer_that_cancels_again_and_again_is_made_safe_once(void) {
     quick *q = begin(ECHO_WHOLE);
-    q->cancels = true;
+    q->nags = "//action:cancel\n";
     const fio_stream_report *report = run(q);
     CHECK_EQUAL(FIO_STREAM_DONE, report->state);
     CHECK_EQUAL(FIO_CANCELLED, report->status);
@@ -142,11 +143,24 @@ static void test_a_printer_that_cancels_again_and_again_is_made_safe_once(void) 
     end(q);
 }
 
+static void test_a_printer_that_starts_again_and_again_is_given_up(void) {
+    quick *q = begin(ECHO_WHOLE);
+    q->nags = "start\n";
+    const fio_stream_report *report = run(q);
+    CHECK_EQUAL(FIO_STREAM_DONE, report->state);
+    CHECK_EQUAL(FIO_LINK_LOST, report->status);
+    CHECK(strstr(report->message, "reset"));
+    CHECK(q->lines < 1000);
+    CHECK(q->now < 300);
+    end(q);
+}
+
 int main(void) {
     RUN(test_a_quick_firmware_is_fed_without_a_pause);
     RUN(test_a_blank_behind_an_echo_is_the_encoders);
     RUN(test_lost_echoes_are_asked_for_again_before_the_history_is_full);
     RUN(test_a_firmware_that_echoes_nothing_is_asked_for_its_temperatures);
     RUN(test_a_printer_that_cancels_again_and_again_is_made_safe_once);
+    RUN(test_a_printer_that_starts_again_and_again_is_given_up);
     return check_verdict();
 }

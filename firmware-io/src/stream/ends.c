@@ -10,8 +10,11 @@
 
 #define STOP_REPEAT 0.5 /* s after the first emergency stop, then twice as long each time */
 #define STOP_REPEAT_MOST 8.0
-enum { REPEATS_MOST = 4 }; /* of heaters off, while it tells of a target */
-#define END_MOST 1800.0    /* s: heating to the end without an emergency parser */
+enum {
+    REPEATS_MOST = 4, /* of heaters off, while it tells of a target */
+    RESETS_MOST = 60  /* of a board that starts again and again, once a second as a rule */
+};
+#define END_MOST 1800.0 /* s: heating to the end without an emergency parser */
 
 static void done(fio_streamer *streamer, bool heaters_off) {
     streamer->report.status = streamer->end_status;
@@ -112,8 +115,13 @@ void fio_end(fio_streamer *streamer, fio_status status, bool renumber, const cha
     if (streamer->state == FIO_STREAM_DONE || streamer->emergency)
         return;
     bool again = streamer->ending;
+    /* A printer that says so with every answer would have it begin anew for ever. */
     if (again && !renumber && status == FIO_CANCELLED)
-        return; /* a printer that says so with every answer would have it begin anew for ever */
+        return;
+    if (again && renumber && ++streamer->end_resets > RESETS_MOST) {
+        done(streamer, false);
+        return;
+    }
     if (!again) {
         va_start(values, format);
         say_why(streamer, status, format, values);
