@@ -204,6 +204,24 @@ static void test_a_number_that_can_not_be_is_asked_for_again(void) {
     dialogue_end(d);
 }
 
+/* The error alone tells as much as the Resend that goes with it. */
+static void test_a_damaged_resend_costs_a_tenth_of_a_second(void) {
+    dialogue *d = dialogue_begin(NULL, five, NULL);
+    greet(d);
+    EXPECT_COMMAND("G90", d);
+    int64_t wanted = d->number;
+    char text[80];
+    snprintf(text, sizeof text, "Error:checksum mismatch, Last Line: %d", (int)wanted - 1);
+    say(d, text);
+    say(d, "Resend: 10?3");
+    say(d, "ok");
+    EXPECT_COMMAND("M83", d); /* the ok is taken for one */
+    CHECK(pass_until_output(d, 5) < 0.3);
+    EXPECT_COMMAND("G90", d);
+    CHECK_EQUAL(wanted, d->number);
+    dialogue_end(d);
+}
+
 static void end_with_heaters_off(dialogue *d) {
     char command[600];
     bool nozzle = false, bed = false, fan = false;
@@ -781,6 +799,7 @@ int main(void) {
     RUN(test_a_lost_ok_costs_less_than_a_second);
     RUN(test_a_lost_line_is_asked_for_by_the_probe);
     RUN(test_a_number_that_can_not_be_is_asked_for_again);
+    RUN(test_a_damaged_resend_costs_a_tenth_of_a_second);
     RUN(test_a_reset_that_nobody_announces_is_noticed);
     RUN(test_a_reset_stops_the_job_with_heaters_off);
     RUN(test_a_halted_firmware_ends_the_job_at_once);

@@ -15,7 +15,8 @@
 #define QUIET_SLACK 0.005 /* s: of a firmware to read and refuse what has arrived */
 #define QUIET_MOST 2.0
 #define QUIET_UNKNOWN 0.05 /* before any trip was measured */
-#define AGREE_SECONDS 0.5  /* an error and the Resend that goes with it */
+#define TOLD_SECONDS 0.1
+#define AGREE_SECONDS 0.5 /* an error and the Resend that goes with it */
 #define DOUBT_SECONDS 0.7
 #define BEAT_LATE 1.1
 enum { DOUBTS_MOST = 8, DOUBTS_SURE = 3, REPEATS_MOST = 100 };
@@ -162,8 +163,19 @@ static double owed_since(const fio_streamer *streamer) {
                 streamer->pulse.busy + BEAT_LATE * beat); /* it will say so again, or answer */
 }
 
+/* When an error that named the last line has waited long enough for its Resend, which was damaged;
+ * INFINITY: there is none. */
+static double told_at(const fio_streamer *streamer) {
+    const fio_recovery *recovery = &streamer->recovery;
+    bool waits = recovery->last_line >= 0 && !streamer->handshaking && !streamer->plain &&
+                 streamer->state != FIO_STREAM_GREETING && streamer->state != FIO_STREAM_DONE;
+    return waits ? recovery->last_time + TOLD_SECONDS : INFINITY;
+}
+
 double fio_recovery_deadline(const fio_streamer *streamer) {
     const fio_recovery *recovery = &streamer->recovery;
+    if (isfinite(told_at(streamer)))
+        return told_at(streamer);
     if (recovery->waiting)
         return recovery->until;
     if (recovery->doubts > 0)
@@ -198,6 +210,12 @@ static void stalled(fio_streamer *streamer) {
 
 void fio_recovery_tick(fio_streamer *streamer) {
     fio_recovery *recovery = &streamer->recovery;
+    if (told_at(streamer) <= streamer->now) {
+        int64_t wanted = recovery->last_line + 1;
+        recovery->last_line = -1;
+        fio_recovery_resend(streamer, wanted);
+        recovery->oks = 0; /* that one has come */
+    }
     if (recovery->waiting && streamer->now >= recovery->until) {
         recovery->waiting = false;
         recovery->oks = 0;
