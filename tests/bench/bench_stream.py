@@ -15,6 +15,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -35,15 +36,30 @@ def verdict(what, value, goal, good):
     print(f"  {'good' if good else 'SHORT'}: {what} {value}, goal {goal}")
 
 
+def memory_of(process):
+    """Bytes at most so far. Of ru_maxrss a part is this program's own, from before the exec()."""
+    try:
+        text = pathlib.Path(f"/proc/{process}/status").read_text()
+        return int(re.search(r"VmHWM:\s+(\d+)", text)[1]) * 1024
+    except (OSError, TypeError):
+        return 0
+
+
 def spend(command, **options):
     """Run; returns (exit code, what it said, CPU seconds, greatest memory in bytes)."""
+    memory = 0
     with tempfile.TemporaryFile() as said:
         process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT, **options)
-        _, status, usage = os.wait4(process.pid, 0)
+        while True:
+            done, status, usage = os.wait4(process.pid, os.WNOHANG)
+            if done:
+                break
+            memory = max(memory, memory_of(process.pid))
+            time.sleep(0.05)
         process.returncode = os.waitstatus_to_exitcode(status)
         said.seek(max(0, said.seek(0, 2) - 4000))
         text = said.read().decode(errors="replace")
-    return process.returncode, text, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+    return process.returncode, text, usage.ru_utime + usage.ru_stime, memory
 
 
 def instant_printer(build, folder):
