@@ -200,4 +200,26 @@ static inline void expect_marker(dialogue *d) {
     answer(d, command);
 }
 
+/* A job of ten commands. */
+__attribute__((unused)) static const char five[] =
+    "G90\nM83\nG1 X1\nG1 X2\nG1 X3\nG1 X4\nG1 X5\nG1 X6\nG1 X7\nG1 X8\n";
+
+static inline void end_with_heaters_off(dialogue *d) {
+    char command[600];
+    bool nozzle = false, bed = false, fan = false;
+    for (int i = 0; i < 30 && dialogue_report(d)->state != FIO_STREAM_DONE; i++) {
+        snprintf(command, sizeof command, "%s", take_command(d));
+        nozzle = nozzle || !strcmp(command, "M104 S0");
+        bed = bed || !strcmp(command, "M140 S0");
+        fan = fan || !strcmp(command, "M107");
+        if (command[0])
+            answer(d, command);
+        else
+            pass(d, 0.3);
+    }
+    CHECK(nozzle && bed && fan);
+    CHECK(dialogue_report(d)->heaters_off);
+    CHECK_EQUAL(FIO_STREAM_DONE, dialogue_report(d)->state);
+}
+
 #endif

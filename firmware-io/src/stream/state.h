@@ -174,7 +174,7 @@ struct fio_streamer {
     int end_repeats;
     int emergencies; /* times it was sent */
     double emergency_time, end_started;
-    int end_resets; /* and other reasons to number anew, since it began to end */
+    int end_resets;  /* and other reasons to number anew, since it began to end */
     bool end_silent; /* it ends because nothing came any more */
     fio_track paused;
     bool retracted;
