@@ -11,6 +11,8 @@ static void put_line(fio_streamer *streamer, fio_sent_line *line) {
     streamer->out_done = 0;
     streamer->out_number = line->number;
     line->time = INFINITY;
+    if (streamer->recovery.allow_one)
+        streamer->recovery.extra = line->number;
     streamer->recovery.allow_one = false;
 }
 

@@ -21,6 +21,7 @@ void fio_history_restart(fio_streamer *streamer, int64_t last) {
     streamer->answered_end = streamer->end = 0;
     streamer->run_count = 0;
     streamer->recovery.careful = 0;
+    streamer->recovery.extra = -1;
     streamer->move_first = streamer->move_last = 0;
     streamer->marker = last;
     streamer->marker_lines = 0;

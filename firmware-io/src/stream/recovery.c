@@ -98,6 +98,7 @@ static void rewind_to(fio_streamer *streamer, int64_t number) {
     }
     recovery->line = number;
     recovery->left = (int)behind - 1;
+    recovery->extra = -1;
     recovery->careful = streamer->next + FIO_CAREFUL_LINES;
     streamer->cursor = number;
     wait_for_answers(streamer, bytes);

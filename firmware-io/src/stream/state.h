@@ -84,6 +84,7 @@ typedef struct fio_recovery {
     double doubt_time;
     double stall, progress; /* s to wait; the last sign that lines are worked at */
     int stalls;
+    int64_t extra;   /* the line that was sent beyond the window after a stall; -1 */
     int64_t careful; /* up to this number lines go one by one */
     bool allow_one;  /* line more than fits the window */
 } fio_recovery;

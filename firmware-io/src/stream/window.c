@@ -7,6 +7,8 @@
  * if it is nothing that takes time, late if it may take long. */
 enum { STALLS_MANY = 1, STALLS_MOVING = 2, STALLS_LONG = 9 };
 
+#define EXTRA_SECONDS 0.02
+
 enum { BYTES_LEAST = 63 };     /* that the smallest receive buffers hold */
 enum { UNNUMBERED_LEAST = 4 }; /* oks in sequence without numbers, where others have them */
 enum { UNSURE_OKS = 2 };       /* the last ones, which may be of lines that wait or were lost */
@@ -140,6 +142,17 @@ static void take_numbered(fio_streamer *streamer, int64_t number) {
         fio_window_set(streamer, number);
 }
 
+/* After a stall, an ok right behind the line that was sent all the same is that line's: those
+ * before it were lost, else there would have been a Resend. Believed only while lines are sent
+ * again, when no marker can tell. */
+static bool answers_extra(fio_streamer *streamer) {
+    const fio_sent_line *line = fio_history_line(streamer, streamer->recovery.extra);
+    double most = 4 * streamer->pulse.trip + EXTRA_SECONDS;
+    streamer->recovery.extra = -1;
+    return line && line->number > streamer->answered && streamer->now - line->time <= most &&
+           streamer->cursor < streamer->next;
+}
+
 void fio_window_answer(fio_streamer *streamer, const fio_answer *answer) {
     fio_recovery_progress(streamer);
     if (!streamer->plain && answer->line >= 0) {
@@ -149,8 +162,10 @@ void fio_window_answer(fio_streamer *streamer, const fio_answer *answer) {
         return;
     }
     if (streamer->answered + 1 < streamer->cursor) {
-        measure_trip(streamer, fio_history_line(streamer, streamer->answered + 1));
-        fio_window_set(streamer, streamer->answered + 1);
+        int64_t extra = streamer->recovery.extra;
+        int64_t number = answers_extra(streamer) ? extra : streamer->answered + 1;
+        measure_trip(streamer, fio_history_line(streamer, number));
+        fio_window_set(streamer, number);
     }
     fio_marker_answered(streamer, answer);
     if (streamer->plain)
