@@ -8,7 +8,11 @@
 
 #include "utf8.h"
 
-enum { PIPE_SECONDS = 600 }; /* between lines about a job whose length is not known */
+enum {
+    PIPE_SECONDS = 600, /* between lines about a job whose length is not known */
+    COMPLAINTS_SAID = 5 /* in a while: a bad cable makes hundreds */
+};
+#define COMPLAINTS_SECONDS 900.0
 
 void fio_narrator_open(fio_narrator *narrator, const fio_arguments *arguments) {
     fio_screen_open(&narrator->screen, arguments->quiet);
@@ -99,18 +103,38 @@ void fio_narrator_start(fio_narrator *narrator, double now, const char *port,
 
 /* ---- events of the streamer ---- */
 
-static void warn(fio_narrator *narrator, const char *text, size_t size) {
+static void say_of_unsaid(fio_narrator *narrator) {
+    if (narrator->unsaid > 0)
+        fio_screen_say(&narrator->screen,
+                       "%" PRId64 " more messages of this sort; --log keeps them all",
+                       narrator->unsaid);
+    narrator->said = 0;
+    narrator->unsaid = 0;
+}
+
+static bool may_complain(fio_narrator *narrator) {
+    if (narrator->said == 0)
+        narrator->said_since = narrator->now;
+    if (narrator->said < COMPLAINTS_SAID) {
+        narrator->said++;
+        return true;
+    }
+    narrator->unsaid++;
+    return false;
+}
+
+static void warn(fio_narrator *narrator, const char *text, size_t size, bool say) {
     char bytes[700];
     fio_text visible = fio_text_in(bytes, sizeof bytes);
     fio_utf8_visible(&visible, text, size);
-    if (!narrator->answers)
+    if (!narrator->answers && say)
         fio_screen_say(&narrator->screen, "%s", bytes);
     fio_dialogue_add(&narrator->dialogue, narrator->now, '#', text, size);
     simple(narrator, "warning", "text", text, size);
 }
 
 void fio_narrator_warn(fio_narrator *narrator, const char *text) {
-    warn(narrator, text, strlen(text));
+    warn(narrator, text, strlen(text), true);
 }
 
 static void say_of_printer(fio_narrator *narrator, const char *what, const char *text,
@@ -200,7 +224,9 @@ static void answer(fio_narrator *narrator, const fio_stream_event *event) {
         narrator->paused_for_user = waits;
     if (is_complaint(said)) {
         narrator->complaints++;
-        if (!narrator->answers && said->kind != FIO_ANSWER_ERROR) /* that comes as a warning, too */
+        bool warned = said->kind == FIO_ANSWER_ERROR; /* that comes as a warning, too */
+        if (!narrator->answers && !warned &&
+            (said->kind == FIO_ANSWER_HALTED || may_complain(narrator)))
             say_of_printer(narrator, "the printer says", said->text, said->length);
     }
     bool hidden = narrator->answers ? is_own(narrator, event) : is_routine(said);
@@ -254,7 +280,7 @@ void fio_narrator_event(fio_narrator *narrator, const fio_stream_event *event) {
         }
         break;
     case FIO_STREAM_WARNING:
-        warn(narrator, event->text, event->length);
+        warn(narrator, event->text, event->length, may_complain(narrator));
         break;
     case FIO_STREAM_PROMPT:
         if (event->length > 0)
@@ -296,6 +322,8 @@ static void line_of_pipe(fio_narrator *narrator, const fio_stream_report *report
 
 void fio_narrator_update(fio_narrator *narrator, double now, const fio_stream_report *report) {
     narrator->now = now;
+    if (narrator->said > 0 && now - narrator->said_since >= COMPLAINTS_SECONDS)
+        say_of_unsaid(narrator);
     if (narrator->has_job && report->state != FIO_STREAM_DONE) {
         fio_progress_update(&narrator->progress, report, now);
         if (narrator->screen.is_terminal)
@@ -333,6 +361,7 @@ static void end_object(fio_narrator *narrator, fio_status status, const fio_stre
 void fio_narrator_end(fio_narrator *narrator, fio_status status, const fio_stream_report *report,
                       const char *resume) {
     narrator->ended = true;
+    say_of_unsaid(narrator);
     end_object(narrator, status, report, resume);
     if (status != FIO_OK) {
         const char *message = fio_error_message();

@@ -31,6 +31,9 @@ typedef struct fio_narrator {
     char token[8];              /* what the last one of our own lets the printer echo */
     bool temperatures, reports; /* somebody has asked for them by M105, by M155 */
     int64_t complaints;         /* answers that say that a command was not done */
+    double said_since;          /* when the first complaint of a while was said… */
+    int said;                   /* … how many were, */
+    int64_t unsaid;             /* and how many more there are */
 } fio_narrator;
 
 void fio_narrator_open(fio_narrator *narrator, const fio_arguments *arguments);

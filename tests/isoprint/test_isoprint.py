@@ -152,6 +152,14 @@ class Printing(Bench):
         again = int(re.search(r"(\d+) sent again", done.stderr.decode())[1])
         self.assertGreater(again, 0)
 
+    def test_many_complaints_are_counted_not_said(self):
+        (self.at / "part.gcode").write_text("G28\n" + "M9999\n" * 300)
+        done = self.run_it("part.gcode", "--port", "virtual", "--virtual", "speed=0", "--log", "log")
+        said = done.stderr.decode()
+        self.assertEqual(5, said.count("Unknown command"))
+        self.assertIn("295 more messages", said)
+        self.assertEqual(300, (self.at / "log").read_text().count('Unknown command: "M9999"'))
+
     def test_standard_input(self):
         port = self.printer("--speed", "instant", "--check", "part.gcode")
         self.run_it("-", "--port", port, input=self.text.encode(), stdin=None)
