@@ -23,6 +23,9 @@ import tempfile
 import time
 
 GOALS = {"speed": 5, "cpu": 0.1, "wire": 0.95, "memory": 20e6}
+# What else a machine does only adds to a cost; and on two cores it is by chance whether the two ends
+# run on one of them or have to wake each other.
+ROUNDS = 5
 verdicts = []
 
 
@@ -111,12 +114,18 @@ def with_isoprint(build, folder, lines):
 
 
 def bench_pty(build, folder, arguments):
-    print("over a pseudo terminal whose far end answers at once")
-    theirs = with_printcore(build, folder, arguments.lines // 20)
-    ours = with_isoprint(build, folder, arguments.lines)
-    for name, (speed, cpu) in (("printcore", theirs), ("isoprint", ours)):
-        print(f"  {name:10} {speed:9.0f} lines/s  {cpu * 1e6:7.2f} us of CPU a line")
-    speed, cpu = ours[0] / theirs[0], ours[1] / theirs[1]
+    print("over a pseudo terminal whose far end answers at once: the best of five rounds, and the median")
+    rounds = {"printcore": [], "isoprint": []}
+    for _ in range(ROUNDS):
+        rounds["printcore"].append(with_printcore(build, folder, arguments.lines // 80))
+        rounds["isoprint"].append(with_isoprint(build, folder, arguments.lines // 4))
+    best = {}
+    for name, results in rounds.items():
+        speeds, costs = sorted(speed for speed, _ in results), sorted(cpu for _, cpu in results)
+        best[name] = speeds[-1], costs[0]
+        print(f"  {name:10} {speeds[-1]:9.0f} lines/s  {costs[0] * 1e6:7.2f} us of CPU a line"
+              f"  (median {speeds[ROUNDS // 2]:.0f} lines/s, {costs[ROUNDS // 2] * 1e6:.2f} us)")
+    speed, cpu = (ours / theirs for ours, theirs in zip(best["isoprint"], best["printcore"]))
     verdict("times printcore's lines/s:", f"{speed:.1f}", GOALS["speed"], speed >= GOALS["speed"])
     verdict("of printcore's CPU a line:", f"{cpu:.4f}", GOALS["cpu"], cpu <= GOALS["cpu"])
 

@@ -15,9 +15,10 @@ static fio_status take_in(fio_transport *transport, fio_streamer *streamer) {
         fio_status status = fio_transport_read(transport, bytes, sizeof bytes, &count);
         if (status != FIO_OK)
             return status;
-        if (count == 0)
-            return FIO_OK;
-        fio_streamer_receive(streamer, fio_transport_now(transport), bytes, count);
+        if (count > 0)
+            fio_streamer_receive(streamer, fio_transport_now(transport), bytes, count);
+        if (count < sizeof bytes)
+            return FIO_OK; /* if there is more all the same, wait() returns at once */
     }
     return FIO_OK;
 }
