@@ -6,7 +6,7 @@ import resource
 import subprocess
 import threading
 
-from bench import LONG, PRINTER, PROGRAM, ROOT, Bench, commands, events, executed, main
+from bench import LONG, PRINTER, PROGRAM, ROOT, Bench, commands, events, executed, job, main
 
 FLAGS = (ROOT / "firmware-io/cli/flags.inl").read_text()
 
@@ -159,6 +159,14 @@ class Printing(Bench):
         self.assertEqual(5, said.count("Unknown command"))
         self.assertIn("295 more messages", said)
         self.assertEqual(300, (self.at / "log").read_text().count('Unknown command: "M9999"'))
+
+    def test_oks_before_the_output_they_belong_to(self):
+        """An echo proves its line executed; no ok is due behind it."""
+        (self.at / "a.gcode").write_text(job(layers=1))
+        port = self.printer("--speed", "instant", "--check", "a.gcode", "--do", "at line 1 ok first")
+        self.run_it("a.gcode", "--port", port, "-q")
+        self.printed()
+        self.assertEqual(0, self.process.returncode, "the printer's own check")
 
     def test_standard_input(self):
         port = self.printer("--speed", "instant", "--check", "part.gcode")

@@ -198,6 +198,11 @@ static void stalled(fio_streamer *streamer) {
                       streamer->firmware.kind == FIO_FIRMWARE_GRBL ? 1 : 5);
         return;
     }
+    /* What an echo proved to be executed owes nothing: its ok was lost, or came before the echo. */
+    if (!streamer->handshaking && streamer->executed + 1 >= streamer->cursor) {
+        fio_window_set(streamer, streamer->cursor - 1);
+        return;
+    }
     recovery->allow_one = true;
     if (streamer->cursor < streamer->next)
         return;
