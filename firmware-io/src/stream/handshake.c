@@ -12,7 +12,13 @@
 #define ANSWER_SECONDS 1.0
 #define GREETING_SECONDS 20.0
 #define UPLOAD_SECONDS 8.0
-enum { ATTEMPTS_MOST = 10, LAST_ATTEMPTS = 5, OBEYED_LEAST = 3, NAME_ATTEMPTS = 6 };
+enum {
+    ATTEMPTS_MOST = 10,
+    LAST_ATTEMPTS = 5,
+    OBEYED_LEAST = 3,
+    NAME_ATTEMPTS = 6,
+    STRANGE_ATTEMPTS = 3
+};
 
 static void go_to(fio_streamer *streamer, fio_greeting greeting, double seconds) {
     streamer->greeting = greeting;
@@ -221,10 +227,17 @@ static void restore(fio_streamer *streamer) {
     fio_queue_await(streamer);
 }
 
+/* A name that nobody knows may be a known one with a wrong bit. */
+static bool name_is_doubtful(const fio_streamer *streamer) {
+    bool strange = streamer->firmware.kind == FIO_FIRMWARE_UNKNOWN;
+    int attempts = !streamer->named ? NAME_ATTEMPTS : strange ? STRANGE_ATTEMPTS : 0;
+    return !streamer->options.firmware && streamer->attempts < attempts;
+}
+
 void fio_handshake_step(fio_streamer *streamer) {
     switch (streamer->greeting) {
     case FIO_GREETING_NAME:
-        if (!streamer->named && !streamer->options.firmware && streamer->attempts < NAME_ATTEMPTS) {
+        if (name_is_doubtful(streamer)) {
             ask_name(streamer);
             return;
         }

@@ -75,9 +75,13 @@ double fio_marker_deadline(const fio_streamer *streamer) {
         return INFINITY;
     if (outstanding)
         return streamer->marker_answered + RETRY_SECONDS;
-    if (streamer->marker_lines >= FIO_MARKER_LINES)
+    if (streamer->marker_lines == 0)
+        return INFINITY;
+    if (streamer->marker_lines >= FIO_MARKER_LINES_MOST)
         return streamer->now;
-    return streamer->marker_lines > 0 ? streamer->marker_time + FIO_MARKER_SECONDS : INFINITY;
+    return streamer->marker_time + (streamer->marker_lines >= FIO_MARKER_LINES
+                                        ? FIO_MARKER_SECONDS_LEAST
+                                        : FIO_MARKER_SECONDS);
 }
 
 bool fio_marker_due(const fio_streamer *streamer) {

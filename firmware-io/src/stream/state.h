@@ -16,7 +16,8 @@ enum {
     FIO_HISTORY_RESERVE = 64,    /* of them for markers and what the host adds */
     FIO_FIRST_NUMBER = 1000,     /* given by M110: a firmware that was reset counts from 0 */
     FIO_FAR_NUMBER = 2000000000, /* no line has it: whoever gets it tells the last one it had */
-    FIO_MARKER_LINES = 24,       /* lines between two markers */
+    FIO_MARKER_LINES = 24,       /* lines between two markers, at least while lines are sent */
+    FIO_MARKER_LINES_MOST = 192, /* at most: well below what is kept */
     FIO_HOST_QUEUE = 64,         /* commands of the host that wait */
     FIO_MOVES_KEPT = 256,  /* moves of which it is open whether they are made: a power of two */
     FIO_PROBLEM_MOST = 512 /* bytes of a message */
@@ -25,11 +26,12 @@ enum {
 /* Lines after a Resend that go one by one: a firmware that throws away what it has received in the
  * middle of a line that is just coming may take the rest of that for a command without a number. */
 #define FIO_CAREFUL_LINES 64
-#define FIO_MARKER_SECONDS 1.0 /* between two markers while lines are sent */
-#define FIO_STALL_SECONDS 0.6  /* an ok is overdue */
-#define FIO_STALL_PACED 2.5    /* … at most, where oks come slowly anyway */
-#define FIO_STALL_MOST 8.0     /* the same, after having asked in vain */
-#define FIO_STALL_LONG 5.0     /* … where what is under way may take long, and in the end */
+#define FIO_MARKER_SECONDS 1.0       /* between two markers while lines are sent */
+#define FIO_MARKER_SECONDS_LEAST 0.1 /* each goes to the journal */
+#define FIO_STALL_SECONDS 0.6        /* an ok is overdue */
+#define FIO_STALL_PACED 2.5          /* … at most, where oks come slowly anyway */
+#define FIO_STALL_MOST 8.0           /* the same, after having asked in vain */
+#define FIO_STALL_LONG 5.0           /* … where what is under way may take long, and in the end */
 #define FIO_STALL_RARE 30.0
 #define FIO_PLAIN_SECONDS                                                                          \
     60.0                         /* silence during usual commands, of a firmware with no heartbeat \
