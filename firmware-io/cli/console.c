@@ -1,5 +1,6 @@
 #include "console.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@ void fio_console_open(fio_console *console, const char *const *commands, int cou
     console->at = 0;
     console->ended = console->refused = console->skipping = console->pending = false;
     console->temperatures = console->reports = false;
+    console->error = 0;
     console->first = console->length = 0;
 }
 
@@ -34,6 +36,10 @@ static void read_more(fio_console *console) {
         console->length += (size_t)got;
     else if (got == 0)
         console->ended = true;
+    else if (errno != EAGAIN && errno != EINTR) {
+        console->ended = true;
+        console->error = errno;
+    }
 }
 
 /* Comment, blanks and control characters away: what is left is one command or nothing. */

@@ -13,6 +13,7 @@ typedef struct fio_console {
     const char *const *commands; /* those of --send; NULL: standard input */
     int count, at;
     bool ended;           /* there will be no more lines */
+    int error;            /* an errno: why standard input could not be read on */
     bool skipping;        /* the rest of a line that was too long */
     size_t first, length; /* what of standard input has been read and not yet been sent */
     char bytes[4096];

@@ -1,4 +1,5 @@
 /* isoprint: send G-code to a printer and see it through. */
+#include <fcntl.h>
 #include <stdio.h>
 
 #include "check.h"
@@ -47,8 +48,18 @@ static fio_status work_and_tell(const fio_arguments *arguments) {
     return status != FIO_OK ? status : told;
 }
 
+/* A port must not take the number of a standard descriptor that is closed: messages would go to the
+ * printer. What stands there instead fails as the closed one would. */
+static void fill_standard_descriptors(void) {
+    static const char *const paths[3] = {"/dev/null", "/dev/full", "/dev/null"};
+    for (int i = 0; i < 3; i++)
+        if (fcntl(i, F_GETFD) < 0)
+            (void)open(paths[i], O_WRONLY);
+}
+
 int main(int argc, char **argv) {
     fio_arguments arguments;
+    fill_standard_descriptors();
     fio_status status = fio_arguments_read(&arguments, argc, argv);
     if (status != FIO_OK)
         fprintf(stderr, "isoprint: %s\n", fio_error_message());

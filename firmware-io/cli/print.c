@@ -263,6 +263,9 @@ static fio_status converse(const fio_arguments *arguments, fio_transport *transp
         status = fio_fail(FIO_FAULTY, "the printer refused a command; its answer says which");
     if (status == FIO_OK && sends && console.refused)
         status = FIO_USAGE;
+    if (status == FIO_OK && console.error)
+        status =
+            fio_fail(FIO_UNREADABLE, "standard input can't be read: %s", strerror(console.error));
     fio_narrator_end(control->narrator, status, fio_streamer_report(streamer), "");
     fio_streamer_free(streamer);
     control->streamer = NULL;

@@ -146,17 +146,13 @@ fio_status fio_resumption_begin(fio_resumption *resumption, const fio_arguments 
                                 ? absolute
                                 : resumption->file);
     snprintf(about.port, sizeof about.port, "%s", resumption->port);
-    fio_status status = fio_journal_create(&resumption->journal, path, &about);
-    if (status == FIO_OK && resumption->resumes)
-        status = fio_journal_add(resumption->journal, &resumption->from);
+    fio_status status = fio_journal_create(&resumption->journal, path, &about,
+                                           resumption->resumes ? &resumption->from : NULL);
     if (status == FIO_OK || arguments->journal)
         return status;
     char text[700];
     snprintf(text, sizeof text, "no journal is kept: %s", fio_error_message());
     fio_narrator_warn(narrator, text);
-    if (resumption->journal)
-        fio_journal_close(resumption->journal, false);
-    resumption->journal = NULL;
     return FIO_OK;
 }
 

@@ -43,6 +43,7 @@ class CommandLine(Bench):
                 (("--window", "4:8"), "16 to 65536"), (("-n", "--bed", "10x10"), "XxYxZ"),
                 (("--upload", "a b"), "without blanks"), (("--upload", "a" * 65), "64 characters"),
                 (("--firmware", "windows"), "Marlin"), (("--port",), "PORT is due"),
+                (("--log", "--json"), "FILE is due"),
                 (("--json=1",), "takes no value"), (("--send", "M105\nM112"), "without line ends")):
             self.fails(2, fragment, *(arguments if arguments[0] == "--send" else
                                       ("part.gcode", *arguments)))
@@ -62,6 +63,10 @@ class CommandLine(Bench):
                                      ("tcp:localhost:1", 9, "localhost"),
                                      ("usb:ffff:ffff", 9, "ffff:ffff")):
             self.fails(code, fragment, "part.gcode", "--port", port)
+        for port, meant in (("/dev/ttyUSB0", "tty:/dev/ttyUSB0"), ("ttyACM1", "tty:/dev/ttyACM1")):
+            self.fails(2, f"is it {meant}?", "part.gcode", "--port", port)
+        for port in ("99999", "0", "23x"):
+            self.fails(2, "from 1 to 65535", "part.gcode", "--port", f"tcp:localhost:{port}")
         self.assertFalse((self.at / "part.gcode.journal").exists())
         self.fails(2, "speed=x", "part.gcode", "--port", "virtual", "--virtual", "speed=x")
 
@@ -87,6 +92,25 @@ class Jobs(Bench):
         for text in ("", "\n\n", "; only\n; comments\n"):
             self.refused(3, "no command", text)
             self.fails(3, "no command", "-", "--port", "virtual", input=text.encode(), stdin=None)
+
+    def test_what_is_something_else(self):
+        """Taken for G-code, a model would be "printed", each of its lines unknown to the firmware."""
+        stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        for text, fragment in ((stl, "isoslice bad.gcode -o"), ("ISO-10303-21;\nHEADER;\n", "a model"),
+                               ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "not G-code"), ("%PDF-1.4\n", "not G-code"),
+                               ("[print]\nlayer_height = 0.2\n", "not G-code"),
+                               ('{"a": 1}\n', "not G-code"), ("<svg/>\n", "not G-code"),
+                               ("\x1f\b", "gunzip"), ("PK\x03\x04", "3MF")):
+            self.refused(3, fragment, text)
+        self.fails(3, "slice it first", "-", "--port", "virtual", input=stl.encode(), stdin=None)
+        self.fails(3, "slice it first", "-n", "-", input=stl.encode(), stdin=None)
+
+    def test_jobs_of_few_and_strange_commands(self):
+        """Each would be refused if it were not G-code to somebody: Marlin, Klipper, grbl."""
+        for text in ("g28", "G 28", "T0", "X10", "M117 hello", "N1 G28*18", "START_PRINT BED=60",
+                     "start_print\nG28"):
+            (self.at / "few.gcode").write_text(text + "\n")
+            self.virtual("few.gcode", "-q")
 
     def test_what_a_job_must_not_hold_is_named_with_its_line(self):
         for command in ("M110 N5", "M112", "M28 a.g", "M29", "M410", "M999", "m112", "M0112"):
@@ -323,6 +347,32 @@ def box(size):
     corner = [(x * size, y * size, z * size) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
     faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     return [tuple(corner[i] for i in t) for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
+
+
+class Descriptors(Bench):
+    """Standard ones that are closed, or nothing that could be read."""
+
+    def with_redirections(self, redirections, code, *arguments):
+        """By files, since a pipe would be opened anew and take the place of what is closed."""
+        done = subprocess.run(["sh", "-c", f'exec "$@" {redirections}', "sh", PROGRAM, *arguments],
+                              cwd=self.at, timeout=LONG, env=self.environment)
+        self.assertEqual(code, done.returncode)
+
+    def test_closed_standard_input_is_no_job(self):
+        self.with_redirections("<&- >out 2>err", 3, "-", "--port", "virtual")
+        self.assertIn("standard input can't be read", (self.at / "err").read_text())
+
+    def test_closed_descriptors_are_not_taken_for_others(self):
+        fast = ("part.gcode", "--port", "virtual", "--virtual", "speed=0")
+        self.with_redirections("<&- >&- 2>&-", 0, *fast)
+        self.with_redirections("<&- >&- 2>&-", 7, *fast, "--json")
+
+    def test_a_console_whose_input_can_t_be_read_ends(self):
+        self.with_redirections("</ >out 2>err", 3, "--console", "--port", "virtual", "--virtual",
+                               "speed=0")
+        self.assertIn("standard input can't be read", (self.at / "err").read_text())
+        self.with_redirections("<&- >out 2>err", 3, "--console", "--port", "virtual", "--virtual",
+                               "speed=0")
 
 
 class Commands(Bench):

@@ -1,9 +1,11 @@
 #define _POSIX_C_SOURCE 200809L
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -73,7 +75,7 @@ static fio_journal_job some_job(void) {
 static fio_journal *create(void) {
     fio_journal *journal = NULL;
     fio_journal_job job = some_job();
-    CHECK_EQUAL(FIO_OK, fio_journal_create(&journal, path, &job));
+    CHECK_EQUAL(FIO_OK, fio_journal_create(&journal, path, &job, NULL));
     return journal;
 }
 
@@ -237,14 +239,66 @@ static void test_it_survives_a_killed_host(void) {
     }
 }
 
+/* As on a full disk: the head would fit, the record does not. */
+static void test_a_journal_is_not_lost_to_one_that_can_t_be_begun(void) {
+    static char bytes[65536];
+    fio_journal_job job = some_job();
+    fio_stream_resume resume, before = resume_of(3), from = resume_of(5);
+    fio_journal *journal = create();
+    rlim_t head = (rlim_t)load(bytes, sizeof bytes);
+    CHECK_EQUAL(FIO_OK, fio_journal_add(journal, &before));
+    fio_journal_close(journal, false);
+    struct rlimit usual, full;
+    getrlimit(RLIMIT_FSIZE, &usual);
+    full = usual;
+    full.rlim_cur = head + 100;
+    fflush(NULL);
+    signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &full);
+    fio_status status = fio_journal_create(&journal, path, &job, &from);
+    setrlimit(RLIMIT_FSIZE, &usual);
+    CHECK_EQUAL(FIO_NOT_WRITTEN, status);
+    CHECK_EQUAL(FIO_OK, fio_journal_read(path, &job, &resume));
+    CHECK(same(&before, &resume));
+    CHECK_EQUAL(FIO_OK, fio_journal_create(&journal, path, &job, &from));
+    CHECK_EQUAL(FIO_OK, fio_journal_read(path, &job, &resume));
+    CHECK(same(&from, &resume));
+    fio_journal_close(journal, true);
+}
+
+/* A right checksum does not make sense of what a tool, a line's number or a place can't be. */
+static void test_values_out_of_range_are_no_record(void) {
+    for (int i = 0; i < 9; i++) {
+        fio_stream_resume added = resume_of(5), resume;
+        fio_journal_job job;
+        int64_t *const numbers[5] = {&added.made, &added.accepted, &added.sent, &added.number,
+                                     &added.runs[2].count};
+        if (i < 5)
+            *numbers[i] = INT64_MAX - 1;
+        else if (i == 5)
+            added.runs[0].number = -1;
+        else if (i == 6)
+            added.track.tool = FIO_TRACK_TOOLS;
+        else if (i == 7)
+            added.track_made.tool = -1;
+        else
+            added.track_made.position[2] = (double)NAN;
+        fio_journal *journal = create();
+        CHECK_EQUAL(FIO_OK, fio_journal_add(journal, &added));
+        fio_journal_close(journal, false);
+        CHECK_EQUAL(FIO_UNREADABLE, fio_journal_read(path, &job, &resume));
+    }
+    unlink(path);
+}
+
 static void test_errors_say_which_file(void) {
     fio_journal *journal;
     fio_journal_job job = some_job();
-    CHECK_EQUAL(FIO_NOT_WRITTEN, fio_journal_create(&journal, "/nowhere/at/all", &job));
+    CHECK_EQUAL(FIO_NOT_WRITTEN, fio_journal_create(&journal, "/nowhere/at/all", &job, NULL));
     CHECK(strstr(fio_error_message(), "/nowhere/at/all"));
     CHECK(journal == NULL);
     fio_fail_allocation_after(0);
-    CHECK_EQUAL(FIO_NO_MEMORY, fio_journal_create(&journal, path, &job));
+    CHECK_EQUAL(FIO_NO_MEMORY, fio_journal_create(&journal, path, &job, NULL));
     fio_fail_allocation_after(-1);
     fio_journal_close(NULL, true);
 }
@@ -256,6 +310,8 @@ int main(void) {
     RUN(test_a_damaged_file_gives_nothing_that_was_not_written);
     RUN(test_a_long_journal_is_written_anew);
     RUN(test_it_survives_a_killed_host);
+    RUN(test_a_journal_is_not_lost_to_one_that_can_t_be_begun);
+    RUN(test_values_out_of_range_are_no_record);
     RUN(test_errors_say_which_file);
     return check_verdict();
 }

@@ -11,6 +11,7 @@
 #include <aio.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,6 +24,8 @@ enum {
     BOOT_MOST = 64,
     REWRITE_BYTES = 64 << 20 /* a longer file is written anew */
 };
+
+#define COUNT_MOST (INT64_C(1) << 60)
 
 struct fio_journal {
     int file;
@@ -100,6 +103,7 @@ static double get_double(fio_fields *fields) {
     double value;
     uint64_t bits = get_hex(fields);
     memcpy(&value, &bits, sizeof value);
+    fields->good = fields->good && isfinite(value);
     return value;
 }
 
@@ -168,7 +172,9 @@ static void get_track(fio_fields *fields, fio_track *track) {
     for (int i = 0; i < FIO_TRACK_TOOLS; i++)
         track->nozzle[i] = get_double(fields);
     track->bed = get_double(fields);
-    track->tool = (int)get_hex(fields);
+    uint64_t tool = get_hex(fields);
+    fields->good = fields->good && tool < FIO_TRACK_TOOLS;
+    track->tool = fields->good ? (int)tool : 0;
     track->feedrate_percent = get_double(fields);
     track->flow_percent = get_double(fields);
 }
@@ -231,6 +237,19 @@ static size_t write_resume(char *record, const fio_stream_resume *resume) {
     return text.length;
 }
 
+/* Numbers that no firmware counts to would overflow where they are reckoned with. */
+static bool makes_sense(const fio_stream_resume *resume) {
+    bool good = resume->made >= 0 && resume->made <= COUNT_MOST && resume->accepted >= 0 &&
+                resume->accepted <= resume->sent && resume->sent <= COUNT_MOST &&
+                resume->number >= -1 && resume->number <= COUNT_MOST;
+    for (int i = 0; i < resume->run_count; i++) {
+        const fio_stream_run *run = &resume->runs[i];
+        good = good && run->number >= 0 && run->number <= COUNT_MOST && run->count >= 0 &&
+               run->count <= COUNT_MOST;
+    }
+    return good;
+}
+
 static bool read_resume(const char *record, fio_stream_resume *resume) {
     fio_fields fields = {record + 3, true};
     *resume = (fio_stream_resume){0};
@@ -250,7 +269,7 @@ static bool read_resume(const char *record, fio_stream_resume *resume) {
     }
     get_track(&fields, &resume->track);
     get_track(&fields, &resume->track_made);
-    return fields.good;
+    return fields.good && makes_sense(resume);
 }
 
 static fio_status fail_to_write(const char *path) {
@@ -327,7 +346,8 @@ static fio_status begin_file(fio_journal *journal, const fio_stream_resume *resu
     return FIO_OK;
 }
 
-fio_status fio_journal_create(fio_journal **journal, const char *path, const fio_journal_job *job) {
+fio_status fio_journal_create(fio_journal **journal, const char *path, const fio_journal_job *job,
+                              const fio_stream_resume *from) {
     *journal = NULL;
     fio_journal *made = fio_allocate(sizeof *made);
     if (!made)
@@ -339,7 +359,7 @@ fio_status fio_journal_create(fio_journal **journal, const char *path, const fio
     strcpy(made->path, path);
     made->job = *job;
     made->file = -1;
-    fio_status status = begin_file(made, NULL);
+    fio_status status = begin_file(made, from);
     if (status != FIO_OK) {
         fio_release(made);
         return status;

@@ -20,9 +20,10 @@ typedef struct fio_journal_job {
     uint64_t fingerprint;
 } fio_journal_job;
 
-/* Begin anew, in place of a journal that is there. */
-fio_status fio_journal_create(fio_journal **journal, const char *path,
-                              const fio_journal_job *job) FIO_MUST_CHECK;
+/* Begin anew, in place of a journal that is there, which stays if this fails. `from`: the first
+ * record, so that at no moment a resumed job has none; NULL: none yet. */
+fio_status fio_journal_create(fio_journal **journal, const char *path, const fio_journal_job *job,
+                              const fio_stream_resume *from) FIO_MUST_CHECK;
 /* Returns once a killed process can't lose it; without waiting for the disk, which has it soon. */
 fio_status fio_journal_add(fio_journal *journal, const fio_stream_resume *resume) FIO_MUST_CHECK;
 /* `done`: the job was printed whole; the file is removed. */
