@@ -96,7 +96,8 @@ static fio_status take_value(walk *along, given_flag *given, const fio_flag_info
         return joined ? fio_fail(FIO_USAGE, "%s: takes no value", given->written) : FIO_OK;
     if (!joined && along->at < along->argc)
         given->value = along->argv[along->at++];
-    return given->value && *given->value
+    bool flag_instead = !joined && given->value && !strncmp(given->value, "--", 2);
+    return given->value && *given->value && !flag_instead
                ? FIO_OK
                : fio_fail(FIO_USAGE, "%s: %s is due behind it", given->written, info->argument);
 }

@@ -55,6 +55,42 @@ static fio_status check_command(const fio_job *job, const fio_source_command *co
     return FIO_OK;
 }
 
+/* ---- text that is something else ---- */
+
+static bool is_letter(char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+}
+
+/* A letter and its number, as all firmwares have them; what grbl asks by a sign; the name of a
+ * macro, as Klipper's START_PRINT. */
+static bool is_gcode(const fio_source_command *command) {
+    const char *text = command->text;
+    size_t length = command->length, letters = 0;
+    bool small = false;
+    if (memchr("$?!~", *text, 4))
+        return true;
+    for (; letters < length && is_letter(text[letters]); letters++)
+        small = small || text[letters] >= 'a';
+    if (letters > 1) /* the words of other languages are written small */
+        return !small && (letters == length || memchr(" \t0123456789", text[letters], 12));
+    fio_words number = {text + letters, text + length};
+    double value;
+    if (!small) /* "v 0 0 0" is a corner in a model */
+        fio_words_blanks(&number);
+    return letters == 1 && fio_words_number(&number, &value);
+}
+
+static bool is_model(const fio_source_command *command) {
+    fio_words words = {command->text, command->text + command->length};
+    return fio_words_take(&words, "solid"); /* an STL of text */
+}
+
+static fio_status fail_model(const fio_job *job) {
+    return fio_fail(FIO_UNREADABLE,
+                    "%s: this is a model, not G-code; slice it first: isoslice %s -o part.gcode",
+                    job->name, job->is_pipe ? "part.stl" : job->name);
+}
+
 static fio_status fail_empty(const fio_job *job) {
     return fio_fail(FIO_UNREADABLE, "%s: there is no command in it", job->name);
 }
@@ -63,7 +99,11 @@ static fio_status check_file(fio_job *job) {
     fio_source_command command;
     fio_source_result result;
     int64_t count = 0;
+    bool any = false;
     while ((result = fio_source_next(job->source, &command)) == FIO_SOURCE_COMMAND) {
+        if (count == 0 && is_model(&command))
+            return fail_model(job);
+        any = any || is_gcode(&command);
         fio_status status = check_command(job, &command);
         if (status == FIO_OK && ++count % SIGNALS_EVERY == 0)
             status = fio_signals_check();
@@ -72,6 +112,9 @@ static fio_status check_file(fio_job *job) {
     }
     if (result == FIO_SOURCE_FAILED)
         return FIO_UNREADABLE;
+    if (count > 0 && !any)
+        return fio_fail(FIO_UNREADABLE, "%s: there is no command in it: this is text, not G-code",
+                        job->name);
     return count == 0 ? fail_empty(job) : fio_source_seek(job->source, 0);
 }
 
@@ -96,6 +139,8 @@ static fio_status wait_for_first(fio_job *job) {
     for (;;) {
         fio_source_result result = next(job, &job->first);
         if (result == FIO_SOURCE_COMMAND) {
+            if (is_model(&job->first))
+                return fail_model(job);
             job->peeked = true;
             return FIO_OK;
         }

@@ -65,7 +65,7 @@ class CommandLine(Bench):
             self.fails(code, fragment, "part.gcode", "--port", port)
         for port, meant in (("/dev/ttyUSB0", "tty:/dev/ttyUSB0"), ("ttyACM1", "tty:/dev/ttyACM1")):
             self.fails(2, f"is it {meant}?", "part.gcode", "--port", port)
-        for port in ("99999", "0", "23x"):
+        for port in ("99999", "0"):
             self.fails(2, "from 1 to 65535", "part.gcode", "--port", f"tcp:localhost:{port}")
         self.assertFalse((self.at / "part.gcode.journal").exists())
         self.fails(2, "speed=x", "part.gcode", "--port", "virtual", "--virtual", "speed=x")
@@ -96,7 +96,7 @@ class Jobs(Bench):
     def test_what_is_something_else(self):
         """Taken for G-code, a model would be "printed", each of its lines unknown to the firmware."""
         stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
-        for text, fragment in ((stl, "isoslice bad.gcode -o"), ("ISO-10303-21;\nHEADER;\n", "a model"),
+        for text, fragment in ((stl, "isoslice bad.gcode -o"),
                                ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "not G-code"), ("%PDF-1.4\n", "not G-code"),
                                ("[print]\nlayer_height = 0.2\n", "not G-code"),
                                ('{"a": 1}\n', "not G-code"), ("<svg/>\n", "not G-code"),

@@ -386,6 +386,8 @@ static void test_what_is_no_job(void) {
     expect_failure("G28\nG1 X\0Y\n", 11, 1, "line 2:", "no text");
     expect_failure("G28\nG1 X\bY\n", 11, 1, "line 2:", "no text");
     expect_failure("GCDE\1\0\0\0\1", 9, 0, "line 1:", "bgcode");
+    expect_failure("\x1f\x8b\b\0\0", 5, 0, "line 1:", "gzip"); /* RFC 1952 */
+    expect_failure("PK\3\4\24\0", 6, 0, "line 1:", "ZIP");
     expect_failure("\xff\xfeG\0"
                    "2\0",
                    6, 0, "line 1:", "UTF-16");

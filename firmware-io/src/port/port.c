@@ -26,6 +26,9 @@ static const char *after(const char *name, const char *prefix) {
 }
 
 static fio_status not_a_name(const char *name) {
+    if (after(name, "/dev/") || after(name, "tty"))
+        return fio_fail(FIO_USAGE, "\"%s\" is no port; is it tty:%s%s?", name,
+                        *name == '/' ? "" : "/dev/", name);
     return fio_fail(FIO_USAGE,
                     "\"%s\" is no port: it takes auto, usb:VID:PID[:SERIAL], tty:PATH, "
                     "socket:PATH, tcp:HOST:PORT or virtual[:SCRIPT]",

@@ -92,9 +92,13 @@ static fio_source_result fail(fio_source *source, const char *what) {
     return FIO_SOURCE_FAILED;
 }
 
-static fio_source_result fail_binary(fio_source *source) {
+static fio_source_result fail_binary(fio_source *source, char bad) {
     const char *text = source->text;
     size_t length = source->length;
+    if (source->line == 1 && length == 0 && bad == '\x1f')
+        return fail(source, "this is compressed (gzip): gunzip it first");
+    if (source->line == 1 && length == 2 && memcmp(text, "PK", 2) == 0)
+        return fail(source, "this is an archive (ZIP, 3MF): it needs unpacking or slicing first");
     if (source->line == 1 && length >= 4 && memcmp(text, "GCDE", 4) == 0)
         return fail(source, "this is binary G-code (bgcode); have the slicer write plain G-code");
     if (source->line == 1 && length >= 2 &&
@@ -252,7 +256,7 @@ static fio_source_step read_on(fio_source *source) {
     if (source->place == IN_PARENTHESES) { /* ')' */
         source->place = IN_TEXT;
     } else if (class == CONTROL) {
-        (void)!fail_binary(source);
+        (void)!fail_binary(source, c);
         return STEP_FAILED;
     } else if (class == SEMICOLON) {
         source->place = IN_COMMENT;

@@ -296,10 +296,10 @@ static void number_again(fio_streamer *streamer) {
 static void give_up(fio_streamer *streamer) {
     const char *hint =
         streamer->halted    ? "it is halted: switch it off and on, or reset it"
-        : streamer->rubbish ? "what comes is rubbish: is the rate (--baud) right?"
+        : streamer->rubbish ? "what comes is rubbish: the rate is wrong; --baud auto finds it"
         : streamer->pulse.heard > streamer->started
             ? "it says something, but does not answer: is another program using it?"
-            : "nothing came back: is it switched on, and is the rate (--baud) right?";
+            : "nothing came back: is it switched on, and is the rate right (--baud auto finds it)?";
     fio_end_now(streamer, FIO_NO_PRINTER, "no printer answers after %.0f s: %s",
                 streamer->now - streamer->started, hint);
 }

@@ -11,6 +11,7 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -142,12 +143,19 @@ static bool split(const char *address, char *host, size_t capacity, const char *
     return true;
 }
 
+static bool is_port(const char *digits) {
+    long number = strlen(digits) < 6 ? strtol(digits, NULL, 10) : 0;
+    return number > 0 && number <= 65535;
+}
+
 fio_status fio_socket_open_host(fio_transport **transport, const char *address, double seconds) {
     *transport = NULL;
     char host[256];
     const char *port;
     if (!split(address, host, sizeof host, &port))
         return fio_fail(FIO_USAGE, "tcp:%s: not of the form tcp:HOST:PORT", address);
+    if (!is_port(port))
+        return fio_fail(FIO_USAGE, "tcp:%s: a port is a number from 1 to 65535", address);
     struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICSERV}, *found = NULL;
     int failed = getaddrinfo(host, port, &hints, &found);
     if (failed)
