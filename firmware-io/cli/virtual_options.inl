@@ -84,8 +84,7 @@ VIRTUAL_OPTION("--mute-without-dtr", FLAG, machine.mute_without_dtr, 0, 0, NULL,
 VIRTUAL_OPTION("--advanced-ok", FLAG, machine.advanced_ok, 0, 0, NULL, "ok N3 P15 B3")
 VIRTUAL_OPTION("--no-emergency-parser", UNFLAG, machine.emergency_parser, 0, 0, NULL,
                "M108, M112 and M410 wait for their turn")
-VIRTUAL_OPTION("--case-insensitive", FLAG, machine.case_insensitive, 0, 0, NULL,
-               "takes n for N")
+VIRTUAL_OPTION("--case-insensitive", FLAG, machine.case_insensitive, 0, 0, NULL, "takes n for N")
 
 VIRTUAL_GROUP("Faults (not with --run); P: a probability for each line, answer or byte, 0 to 1")
 VIRTUAL_OPTION("--script", TEXT, script, 0, 0, "FILE", "what goes wrong when, see the manual")
@@ -102,8 +101,7 @@ VIRTUAL_OPTION("--lose-bytes-in", NUMBER, machine.faults.lose_bytes_in, 0, 1, "P
 VIRTUAL_OPTION("--lose-ok", NUMBER, machine.faults.lose_ok, 0, 1, "P", "an ok is lost")
 VIRTUAL_OPTION("--double-ok", NUMBER, machine.faults.double_ok, 0, 1, "P", "an ok comes twice")
 VIRTUAL_OPTION("--late-ok", NUMBER, machine.faults.late_ok, 0, 1, "P", "an ok comes late")
-VIRTUAL_OPTION("--late-seconds", NUMBER, machine.faults.late_seconds, 0, 1e6, "S",
-               "by so long (1)")
+VIRTUAL_OPTION("--late-seconds", NUMBER, machine.faults.late_seconds, 0, 1e6, "S", "by so long (1)")
 VIRTUAL_OPTION("--split", NUMBER, machine.faults.split, 0, 1, "P", "an answer comes in pieces")
 VIRTUAL_OPTION("--merge", NUMBER, machine.faults.merge, 0, 1, "P",
                "an answer waits for the next one")

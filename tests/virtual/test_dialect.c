@@ -98,7 +98,7 @@ static void test_reprapfirmware(void) {
     bench *b = speak("reprapfirmware");
     CHECK(strstr(bench_ask(b, "M115\n", 0.1), "FIRMWARE_NAME: RepRapFirmware for Duet"));
     bench_expect(b, bench_line(5, "G90"), 0.1, "ok\n"); /* the order means nothing */
-    bench_expect(b, "N3 G90*1\n", 0.1, ""); /* passed over without a word */
+    bench_expect(b, "N3 G90*1\n", 0.1, "");             /* passed over without a word */
     bench_expect(b, bench_line(3, "G90"), 0.1, "ok\n");
     bench_free(b);
 }

@@ -156,17 +156,16 @@ static const char *const dead[] = {"Printer halted",
                                    NULL};
 
 static bool read_error(fio_answer *answer, fio_words words) {
-    static const char *const alarms[] = {
-        "ALARM:",
-        "Alarm:",
-        "fatal:",
-        "Emergency Stop!",
-        "ok Emergency Stop",
-        "HALTED",
-        "// Klipper state: Shutdown",
-        "// Printer is shutdown",
-        "// Printer is halted",
-        NULL};
+    static const char *const alarms[] = {"ALARM:",
+                                         "Alarm:",
+                                         "fatal:",
+                                         "Emergency Stop!",
+                                         "ok Emergency Stop",
+                                         "HALTED",
+                                         "// Klipper state: Shutdown",
+                                         "// Printer is shutdown",
+                                         "// Printer is halted",
+                                         NULL};
     if (any_start(&words, alarms)) {
         after(answer, words, answer->kind = FIO_ANSWER_HALTED);
         return true;
