@@ -84,11 +84,7 @@ static fio_status set_rate(fio_serial *serial, int64_t rate) {
 static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
     fio_status status = tell(serial, SET_CONTROL_LINE_STATE,
                              (uint16_t)((dtr ? DTR : 0) | (rts ? RTS : 0)), NULL, 0);
-    if (status != FIO_OK)
-        return status;
-    serial->dtr = dtr;
-    serial->rts = rts;
-    return FIO_OK;
+    return fio_serial_note_lines(serial, dtr, rts, status);
 }
 
 static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
@@ -96,15 +92,10 @@ static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
     return status == FIO_OK && raise_lines ? set_lines(serial, true, true) : status;
 }
 
-/* With DTR up, many boards go on sending and fill up once nobody reads. */
-static fio_status close(fio_serial *serial) {
-    return serial->dtr || serial->rts ? set_lines(serial, false, false) : FIO_OK;
-}
-
 const fio_serial_driver fio_serial_cdc_acm = {.name = "cdc-acm",
                                               .match = match,
                                               .open = open,
                                               .set_rate = set_rate,
                                               .set_lines = set_lines,
-                                              .close = close,
+                                              .close = fio_serial_lower_lines,
                                               .wants_empty_packet = true};

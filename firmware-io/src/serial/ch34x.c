@@ -80,11 +80,7 @@ static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
     uint16_t lines = (uint16_t) ~((dtr ? DTR : 0) | (rts ? RTS : 0)); /* low is on */
     fio_status status =
         fio_serial_send(serial, (fio_request){TO_DEVICE, MODEM_CONTROL, lines, 0, 0}, NULL);
-    if (status != FIO_OK)
-        return status;
-    serial->dtr = dtr;
-    serial->rts = rts;
-    return FIO_OK;
+    return fio_serial_note_lines(serial, dtr, rts, status);
 }
 
 /* A clone that stalls when it is asked for the break register lacks other things too. */
@@ -106,13 +102,9 @@ static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
     return status == FIO_OK && raise_lines ? set_lines(serial, true, true) : status;
 }
 
-static fio_status close(fio_serial *serial) {
-    return serial->dtr || serial->rts ? set_lines(serial, false, false) : FIO_OK;
-}
-
 const fio_serial_driver fio_serial_ch34x = {.name = "ch341",
                                             .match = match,
                                             .open = open,
                                             .set_rate = set_rate,
                                             .set_lines = set_lines,
-                                            .close = close};
+                                            .close = fio_serial_lower_lines};

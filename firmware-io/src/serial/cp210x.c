@@ -101,11 +101,7 @@ static fio_status set_rate(fio_serial *serial, int64_t rate) {
 static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
     uint16_t lines = (uint16_t)(BOTH_CHANGE | (dtr ? DTR : 0) | (rts ? RTS : 0));
     fio_status status = fio_serial_send(serial, request(serial, SET_MODEM, lines, 0), NULL);
-    if (status != FIO_OK)
-        return status;
-    serial->dtr = dtr;
-    serial->rts = rts;
-    return FIO_OK;
+    return fio_serial_note_lines(serial, dtr, rts, status);
 }
 
 /* No handshake of any kind, whatever was set before. This drives the two lines too; where they must
@@ -149,7 +145,7 @@ static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
 
 /* Some parts hang, and do not open again, if they are switched off with bytes in them. */
 static fio_status close(fio_serial *serial) {
-    fio_status status = serial->dtr || serial->rts ? set_lines(serial, false, false) : FIO_OK;
+    fio_status status = fio_serial_lower_lines(serial);
     if (status == FIO_OK)
         status = fio_serial_send(serial, request(serial, PURGE, PURGE_ALL, 0), NULL);
     if (status == FIO_OK)

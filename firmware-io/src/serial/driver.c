@@ -97,6 +97,18 @@ fio_status fio_serial_ask(const fio_serial *serial, fio_request request, void *d
     return status;
 }
 
+fio_status fio_serial_note_lines(fio_serial *serial, bool dtr, bool rts, fio_status status) {
+    if (status != FIO_OK)
+        return status;
+    serial->dtr = dtr;
+    serial->rts = rts;
+    return FIO_OK;
+}
+
+fio_status fio_serial_lower_lines(fio_serial *serial) {
+    return serial->dtr || serial->rts ? serial->driver->set_lines(serial, false, false) : FIO_OK;
+}
+
 fio_status fio_serial_check_rate(const fio_serial *serial, int64_t rate, double nearest) {
     if (rate > 0 && fabs(nearest - (double)rate) * 100 <= FIO_SERIAL_RATE_ERROR * (double)rate)
         return FIO_OK;

@@ -36,6 +36,14 @@ fio_status fio_serial_send(const fio_serial *serial, fio_request request,
 fio_status fio_serial_ask(const fio_serial *serial, fio_request request, void *data,
                           bool *answered) FIO_MUST_CHECK;
 
+/* What set_lines() of a driver came to: if it succeeded, `serial` knows of it. */
+fio_status fio_serial_note_lines(fio_serial *serial, bool dtr, bool rts,
+                                 fio_status status) FIO_MUST_CHECK;
+
+/* close() of a bridge of which nothing else has to be undone. With DTR up, many boards go on
+ * sending and fill up once nobody reads. */
+fio_status fio_serial_lower_lines(fio_serial *serial) FIO_MUST_CHECK;
+
 /* FIO_USAGE if `nearest`, the rate the chip would really run at, is too far from `rate`. */
 fio_status fio_serial_check_rate(const fio_serial *serial, int64_t rate,
                                  double nearest) FIO_MUST_CHECK;

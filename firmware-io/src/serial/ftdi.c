@@ -102,11 +102,7 @@ static fio_status set_rate(fio_serial *serial, int64_t rate) {
 static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
     uint16_t lines = (uint16_t)((dtr ? DTR_ON : DTR_OFF) | (rts ? RTS_ON : RTS_OFF));
     fio_status status = set(serial, SET_MODEM, lines, serial->state[CHANNEL]);
-    if (status != FIO_OK)
-        return status;
-    serial->dtr = dtr;
-    serial->rts = rts;
-    return FIO_OK;
+    return fio_serial_note_lines(serial, dtr, rts, status);
 }
 
 static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
@@ -123,10 +119,6 @@ static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
     if (status == FIO_OK)
         status = set(serial, SET_FLOW, 0, channel);
     return status == FIO_OK && raise_lines ? set_lines(serial, true, true) : status;
-}
-
-static fio_status close(fio_serial *serial) {
-    return serial->dtr || serial->rts ? set_lines(serial, false, false) : FIO_OK;
 }
 
 static size_t unwrap(fio_serial *serial, uint8_t *bytes, size_t size) {
@@ -147,5 +139,5 @@ const fio_serial_driver fio_serial_ftdi = {.name = "ftdi",
                                            .open = open,
                                            .set_rate = set_rate,
                                            .set_lines = set_lines,
-                                           .close = close,
+                                           .close = fio_serial_lower_lines,
                                            .unwrap = unwrap};

@@ -133,11 +133,7 @@ static fio_status set_lines(fio_serial *serial, bool dtr, bool rts) {
     uint16_t lines = (uint16_t)((dtr ? DTR : 0) | (rts ? RTS : 0));
     fio_status status = fio_serial_send(
         serial, (fio_request){TO_INTERFACE, SET_CONTROL_LINE_STATE, lines, 0, 0}, NULL);
-    if (status != FIO_OK)
-        return status;
-    serial->dtr = dtr;
-    serial->rts = rts;
-    return FIO_OK;
+    return fio_serial_note_lines(serial, dtr, rts, status);
 }
 
 /* What the vendor's software sends to all but the HXN; nobody outside knows what it means, and the
@@ -198,13 +194,9 @@ static fio_status open(fio_serial *serial, int64_t rate, bool raise_lines) {
     return status == FIO_OK && raise_lines ? set_lines(serial, true, true) : status;
 }
 
-static fio_status close(fio_serial *serial) {
-    return serial->dtr || serial->rts ? set_lines(serial, false, false) : FIO_OK;
-}
-
 const fio_serial_driver fio_serial_pl2303 = {.name = "pl2303",
                                              .match = match,
                                              .open = open,
                                              .set_rate = set_rate,
                                              .set_lines = set_lines,
-                                             .close = close};
+                                             .close = fio_serial_lower_lines};
