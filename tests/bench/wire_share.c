@@ -22,7 +22,7 @@ typedef struct trial {
     int window_lines; /* 0: as the firmware tells */
     double begun, ended;
     int64_t bytes_begun, bytes_ended;
-} trial;
+} wire_trial;
 
 static void must(fio_status status, const char *what) {
     if (status == FIO_OK)
@@ -48,7 +48,7 @@ static fio_source_result next(void *context, fio_source_command *command) {
 }
 
 typedef struct observed {
-    trial *trial;
+    wire_trial *trial;
     const fio_streamer *streamer;
 } observed;
 
@@ -68,7 +68,7 @@ static void watch(void *context, double now, const struct pollfd *polls, int cou
     }
 }
 
-static void run(trial *trial, const char *text, size_t length, fio_machine_counts *counts,
+static void run(wire_trial *trial, const char *text, size_t length, fio_machine_counts *counts,
                 fio_stream_report *report) {
     fio_machine_options machine_options = fio_machine_options_defaults();
     fio_stream_options options = fio_stream_options_defaults();
@@ -101,7 +101,7 @@ static void run(trial *trial, const char *text, size_t length, fio_machine_count
 
 int main(void) {
     static char text[LINE_MOST * (MOVES + 16)];
-    trial trials[] = {
+    wire_trial trials[] = {
         {.name = "native", .speed = 100},
         {.name = "wire, firmware tells its room", .rate = 250000, .speed = 400, .tells = true},
         {.name = "wire, window of 4 lines given", .rate = 250000, .speed = 400, .window_lines = 4},
