@@ -14,7 +14,7 @@
 enum { MOVES = 10000, LINE_MOST = 48 };
 
 /* A job and how it fared. */
-typedef struct trial {
+typedef struct wire_trial {
     const char *name;
     int64_t rate;     /* bits/s; 0: native USB */
     double speed;     /* mm/s of moves of 0.1 mm */
@@ -111,7 +111,7 @@ int main(void) {
     for (size_t i = 0; i < sizeof trials / sizeof *trials; i++) {
         fio_machine_counts counts;
         fio_stream_report report;
-        trial *of = &trials[i];
+        wire_trial *of = &trials[i];
         run(of, text, write_job(text, of->speed), &counts, &report);
         double seconds = of->ended - of->begun;
         double bytes = (double)(of->bytes_ended - of->bytes_begun);
