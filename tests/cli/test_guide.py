@@ -157,6 +157,9 @@ class Guide(unittest.TestCase):
         for path in (ROOT / "engine/src").iterdir():
             if path.is_dir() or path.suffix == ".c":
                 self.assertIn(f"`{path.name}{'/' if path.is_dir() else ''}`", text)
+        text = (ROOT / "docs/streaming.md").read_text()
+        for path in (ROOT / "firmware-io/src").iterdir():
+            self.assertIn(f"`{path.name}/`", text)
 
 
 if __name__ == "__main__":
