@@ -172,13 +172,7 @@ void fio_job_close(fio_job *job) {
 }
 
 fio_source_result fio_job_next(void *context, fio_source_command *command) {
-    fio_job *job = context;
-    fio_source_result result = next(job, command);
-    if (result == FIO_SOURCE_COMMAND) {
-        job->lines[command->index % FIO_JOB_LINES] = command->line;
-        job->given = command->index + 1;
-    }
-    return result;
+    return next(context, command);
 }
 
 void fio_job_look(fio_job *job) {
@@ -187,10 +181,20 @@ void fio_job_look(fio_job *job) {
         job->waits = false;
 }
 
-int64_t fio_job_line_of(const fio_job *job, int64_t index) {
-    if (index < job->given)
-        return job->lines[index % FIO_JOB_LINES];
-    return job->given > 0 ? job->lines[(job->given - 1) % FIO_JOB_LINES] + 1 : 1;
+fio_status fio_job_line_of(fio_job *job, int64_t *line, int64_t index) {
+    fio_source_command command;
+    *line = 1;
+    fio_status status = fio_source_seek(job->source, index > 0 ? index - 1 : 0);
+    if (status != FIO_OK)
+        return status;
+    fio_source_result result = fio_source_next(job->source, &command);
+    if (index > 0 && result == FIO_SOURCE_COMMAND) {
+        *line = command.line + 1;
+        result = fio_source_next(job->source, &command);
+    }
+    if (result == FIO_SOURCE_COMMAND)
+        *line = command.line;
+    return result == FIO_SOURCE_FAILED ? FIO_UNREADABLE : FIO_OK;
 }
 
 fio_status fio_job_seek(void *context, int64_t index) {

@@ -6,8 +6,6 @@
 
 #include "stream/streamer.h"
 
-enum { FIO_JOB_LINES = 1024 }; /* more than are ever under way: a power of 2 */
-
 typedef struct fio_job {
     fio_source *source;
     const char *name; /* for messages */
@@ -16,8 +14,6 @@ typedef struct fio_job {
     bool peeked;        /* `first` has been read and not yet been given out */
     fio_status failure; /* why next() gave FIO_SOURCE_FAILED */
     fio_source_command first;
-    int64_t lines[FIO_JOB_LINES]; /* of the last commands given out, by their index */
-    int64_t given;                /* index behind the last one; 0: none */
 } fio_job;
 
 /* `path` "-": standard input, of which the first command is waited for; otherwise the whole file is
@@ -37,7 +33,8 @@ fio_status fio_job_find_line(fio_job *job, int64_t line, fio_stream_resume *resu
 /* Stop watching a pipe that has become readable: the streamer will come for it in its own time. */
 void fio_job_look(fio_job *job);
 
-/* The line of a command that was given out not long ago, or of the one behind the last. */
-int64_t fio_job_line_of(const fio_job *job, int64_t index);
+/* The line of a command, or the one behind the last command's. Leaves the job behind it. Not for
+ * pipes. */
+fio_status fio_job_line_of(fio_job *job, int64_t *line, int64_t index) FIO_MUST_CHECK;
 
 #endif

@@ -188,8 +188,7 @@ static void quoted(fio_text *text, const char *word) {
 }
 
 static void describe(fio_text *text, const fio_resumption *resumption,
-                     const fio_arguments *arguments, const fio_stream_report *report,
-                     const fio_job *job) {
+                     const fio_arguments *arguments, const fio_job *job, int64_t line) {
     fio_text_string(text, "isoprint ");
     if (job->is_pipe)
         fio_text_string(text, "-");
@@ -199,7 +198,7 @@ static void describe(fio_text *text, const fio_resumption *resumption,
     if (resumption->journal)
         quoted(text, resumption->journal_path);
     else
-        fio_text_integer(text, fio_job_line_of(job, report->resume.made));
+        fio_text_integer(text, line);
     fio_text_string(text, " --port ");
     quoted(text, resumption->port);
     if (arguments->baud_given && arguments->baud > 0) {
@@ -209,15 +208,18 @@ static void describe(fio_text *text, const fio_resumption *resumption,
 }
 
 void fio_resumption_end(fio_resumption *resumption, const fio_arguments *arguments,
-                        fio_status status, const fio_stream_report *report, const fio_job *job,
+                        fio_status status, const fio_stream_report *report, fio_job *job,
                         char *command, size_t size) {
     fio_text text = fio_text_in(command, size);
     bool begun = report->resume.accepted > 0;
     bool possible = begun && status != FIO_OK && (resumption->journal || !job->is_pipe);
     if (resumption->journal && possible)
         (void)(fio_journal_add(resumption->journal, &report->resume) == FIO_OK);
+    int64_t line = 0;
+    if (possible && !resumption->journal)
+        possible = fio_job_line_of(job, &line, report->resume.made) == FIO_OK;
     if (possible)
-        describe(&text, resumption, arguments, report, job);
+        describe(&text, resumption, arguments, job, line);
     if (resumption->journal)
         fio_journal_close(resumption->journal,
                           status == FIO_OK || (!begun && !resumption->resumes));

@@ -39,7 +39,7 @@ void fio_resumption_mark(fio_resumption *resumption, const fio_stream_resume *re
 
 /* After the end. `command` (`size` bytes) is what goes on with the job, "" if nothing does. */
 void fio_resumption_end(fio_resumption *resumption, const fio_arguments *arguments,
-                        fio_status status, const fio_stream_report *report, const fio_job *job,
+                        fio_status status, const fio_stream_report *report, fio_job *job,
                         char *command, size_t size);
 
 #endif

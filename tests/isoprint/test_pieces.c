@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "../../firmware-io/cli/job.h"
 #include "../../firmware-io/cli/json.h"
 #include "../../firmware-io/cli/nearest.h"
 #include "../../firmware-io/cli/output.h"
@@ -162,6 +163,36 @@ static void test_a_full_pipe(void) {
     close(ends[1]);
 }
 
+/* Command i stands in line 3 i + 2. After a resume most commands were never given out, and what is
+ * surely made may lie far behind what was. */
+static void test_the_line_of_any_command(void) {
+    enum { COMMANDS = 5000 };
+    char path[] = "/tmp/isoprint-test-job-XXXXXX";
+    FILE *file = fdopen(mkstemp(path), "w");
+    for (int i = 0; file && i < COMMANDS; i++)
+        fprintf(file, "; comment\nG1 X%d\n\n", i);
+    if (!file || fclose(file) != 0)
+        abort();
+    static fio_job job;
+    fio_source_command command;
+    CHECK_EQUAL(FIO_OK, fio_job_open(&job, path));
+    CHECK_EQUAL(FIO_OK, fio_job_seek(&job, 3000));
+    CHECK_EQUAL(FIO_SOURCE_COMMAND, fio_job_next(&job, &command));
+    const int64_t indices[] = {3000, 0, 10, 2999, 3001, 4999, 1, 100};
+    for (size_t i = 0; i < sizeof indices / sizeof *indices; i++) {
+        int64_t line = -1;
+        CHECK_EQUAL(FIO_OK, fio_job_line_of(&job, &line, indices[i]));
+        CHECK_EQUAL(3 * indices[i] + 2, line);
+    }
+    int64_t line = -1;
+    CHECK_EQUAL(FIO_OK, fio_job_line_of(&job, &line, COMMANDS)); /* all is made */
+    CHECK_EQUAL(3 * COMMANDS, line);
+    CHECK_EQUAL(0, truncate(path, 40));
+    CHECK(fio_job_line_of(&job, &line, 4000) != FIO_OK);
+    fio_job_close(&job);
+    unlink(path);
+}
+
 int main(void) {
     RUN(test_nearest);
     RUN(test_utf8);
@@ -170,5 +201,6 @@ int main(void) {
     RUN(test_durations);
     RUN(test_time_left);
     RUN(test_a_full_pipe);
+    RUN(test_the_line_of_any_command);
     return check_verdict();
 }
