@@ -47,7 +47,7 @@ static const struct {
 } exit_codes[] = {
     {FIO_OK, "Done: the printer has every command, and has made every move."},
     {FIO_USAGE, "A command line that makes no sense; nothing was sent."},
-    {FIO_UNREADABLE, "A file that can't be read, or that holds no command."},
+    {FIO_UNREADABLE, "A file that can't be read, is no G-code, or holds no command."},
     {FIO_NOT_WRITTEN, "Output that could not be written: the log, the journal, standard output."},
     {FIO_FAULTY, "The job holds what a job must not do, or the printer refused or halted."},
     {FIO_NO_PRINTER, "No such port, it may not be opened, or nothing answers there."},

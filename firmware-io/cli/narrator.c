@@ -385,8 +385,10 @@ void fio_narrator_end(fio_narrator *narrator, fio_status status, const fio_strea
         line_of_terminal(narrator, report);
     }
     fio_screen_say(&narrator->screen, "%s in %s: %" PRId64 " commands, %" PRId64 " sent again",
-                   narrator->upload ? "written to the card" : "printed", bytes, report->accepted,
-                   report->repeats);
+                   narrator->started  ? "written to the card and begun"
+                   : narrator->upload ? "written to the card"
+                                      : "printed",
+                   bytes, report->accepted, report->repeats);
 }
 
 int fio_narrator_descriptors(const fio_narrator *narrator, struct pollfd *polls) {

@@ -20,6 +20,7 @@ typedef struct fio_narrator {
     bool answers;         /* what the printer says goes to standard output: console, --send */
     bool has_job;         /* there is a progress to tell of */
     bool upload;          /* of writing to the card */
+    bool started;         /* and the file there is being printed */
     bool paused_for_user; /* the printer waits for a person */
     double start, now;    /* of the transport's clock */
     double told;          /* when the last progress went out as JSON or as a line of a pipe */

@@ -180,6 +180,7 @@ static fio_status start_from_card(running_job *running) {
     if (status == FIO_OK && control->narrator->complaints > complaints)
         status = fio_fail(FIO_FAULTY, "the printer did not start %s from its card",
                           running->arguments.upload);
+    control->narrator->started = status == FIO_OK;
     return status;
 }
 

@@ -462,7 +462,8 @@ class Card(Bench):
         done = self.run_it("part.gcode", "--upload", "PART.GCO", "--port", port)
         self.assertIn(b"written to the card", done.stderr)
         self.assertEqual([], [line for line in executed(self.at / "executed") if "X50" in line])
-        self.run_it("part.gcode", "--upload", "PART2.GCO", "--start", "--port", port, "-q")
+        done = self.run_it("part.gcode", "--upload", "PART2.GCO", "--start", "--port", port)
+        self.assertIn(b"written to the card and begun", done.stderr)
         self.until(lambda: [line for line in executed(self.at / "executed") if "X50" in line],
                    "the printer did not start from its card")
 
