@@ -456,6 +456,56 @@ static void test_a_pause_restores_position_temperatures_and_modes(void) {
     dialogue_end(d);
 }
 
+/* All that the host says until it is in this state. */
+static void answer_until(dialogue *d, fio_stream_state state, char *all, size_t capacity) {
+    all[0] = 0;
+    for (int i = 0; i < 60 && dialogue_report(d)->state != state; i++) {
+        char command[600];
+        snprintf(command, sizeof command, "%s", take_command(d));
+        size_t length = strlen(all);
+        snprintf(all + length, capacity - length, "%s|", command);
+        answer(d, command);
+    }
+    CHECK_EQUAL(state, dialogue_report(d)->state);
+}
+
+static void test_what_is_set_by_hand_in_a_pause_outlasts_the_next_one(void) {
+    static const char job[] = "G28\nM104 S210\nG1 X10 Y20 Z0.3 F1500\nG1 X12\nG1 X13\nG1 X14\n";
+    static char all[4000];
+    dialogue *d = dialogue_begin(NULL, job, NULL);
+    greet(d);
+    for (int i = 0; i < 3; i++) {
+        CHECK(take(d) != NULL);
+        say(d, "ok");
+    }
+    for (int pause = 0; pause < 2; pause++) {
+        fio_streamer_pause(d->streamer, d->now);
+        answer_until(d, FIO_STREAM_PAUSED, all, sizeof all);
+        if (pause == 0) {
+            CHECK_EQUAL(FIO_OK, fio_streamer_command(d->streamer, d->now, "M104 S225"));
+            EXPECT_COMMAND("M104 S225", d);
+            say(d, "ok");
+        }
+        fio_streamer_resume(d->streamer, d->now);
+        answer_until(d, FIO_STREAM_RUNNING, all, sizeof all);
+        CHECK(strstr(all, "S225") && !strstr(all, "S210"));
+    }
+    dialogue_end(d);
+}
+
+static void test_one_that_was_cancelled_before_it_began_stays_so(void) {
+    fio_streamer *streamer;
+    const char *bytes;
+    bool discard;
+    CHECK_EQUAL(FIO_OK, fio_streamer_create(&streamer, NULL, NULL, NULL, NULL));
+    fio_streamer_cancel(streamer, 100);
+    fio_streamer_tick(streamer, 100);
+    CHECK_EQUAL(FIO_STREAM_DONE, fio_streamer_report(streamer)->state);
+    CHECK_EQUAL(0, fio_streamer_output(streamer, 110, &bytes, &discard));
+    CHECK_EQUAL(FIO_CANCELLED, fio_streamer_report(streamer)->status);
+    fio_streamer_free(streamer);
+}
+
 static void test_cancel_switches_off_and_waits_for_the_answer(void) {
     dialogue *d = dialogue_begin(NULL, five, NULL);
     greet(d);
@@ -631,6 +681,8 @@ int main(void) {
     RUN(test_an_emergency_stop_is_repeated_until_it_is_confirmed);
     RUN(test_the_end_is_believed_only_when_a_marker_is_answered);
     RUN(test_a_pause_restores_position_temperatures_and_modes);
+    RUN(test_what_is_set_by_hand_in_a_pause_outlasts_the_next_one);
+    RUN(test_one_that_was_cancelled_before_it_began_stays_so);
     RUN(test_cancel_switches_off_and_waits_for_the_answer);
     RUN(test_the_printers_own_actions_are_obeyed);
     RUN(test_after_a_disconnect_it_goes_on_with_the_next_command);

@@ -103,7 +103,7 @@ void fio_streamer_enter(fio_streamer *streamer, fio_stream_state state) {
 }
 
 static void pass_time(fio_streamer *streamer, double now) {
-    if (streamer->begun) {
+    if (streamer->begun || streamer->state == FIO_STREAM_DONE) {
         if (now > streamer->now)
             streamer->now = now;
         return;
@@ -399,9 +399,11 @@ fio_status fio_streamer_command(fio_streamer *streamer, double now, const char *
         return fio_fail(FIO_USAGE, "too many commands wait already");
     if (!fio_queue_command(streamer, text, length))
         return fio_fail(FIO_USAGE, "the command is too long");
-    fio_track *track = running ? &streamer->track : &streamer->paused;
-    if (running || *text == 'M' || *text == 'm')
-        fio_track_follow(track, text, length);
+    bool sets = *text == 'M' || *text == 'm'; /* moves in a pause are undone at its end */
+    if (running || sets)
+        fio_track_follow(&streamer->track, text, length);
+    if (!running && sets)
+        fio_track_follow(&streamer->paused, text, length);
     return FIO_OK;
 }
 
