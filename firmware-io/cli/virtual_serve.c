@@ -70,8 +70,9 @@ static fio_status read_script(serving *s) {
         return fio_fail(FIO_NO_MEMORY, "no memory for a script");
     if (failed || size == SCRIPT_MOST || memchr(s->script, 0, size))
         return fio_fail(FIO_UNREADABLE, "%s: can't be read, is no text, or is too long", path);
-    s->script[size] = '\n';
-    memcpy(s->script + size + 1, steps, more + 1);
+    if (size > 0 && s->script[size - 1] != '\n')
+        s->script[size++] = '\n';
+    memcpy(s->script + size, steps, more + 1);
     return FIO_OK;
 }
 

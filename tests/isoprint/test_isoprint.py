@@ -73,6 +73,15 @@ class CommandLine(Bench):
     def test_the_environment_names_a_port(self):
         self.fails(9, "/dev/none", "part.gcode", env={"ISOPRINT_PORT": "tty:/dev/none"})
 
+    def test_the_printer_names_the_place_in_its_script(self):
+        (self.at / "script").write_text("at line 5 reset\n# and\n")
+        for arguments, line in ((("--do", "at lin 9 reset"), 1),
+                                (("--script", "script", "--do", "at lin 9 reset"), 3)):
+            done = subprocess.run([PRINTER, "--pty", "p", *arguments, "--", "true"], cwd=self.at,
+                                  capture_output=True, timeout=LONG)
+            self.assertEqual(2, done.returncode)
+            self.assertIn(f"script, line {line}, column 4".encode(), done.stderr)
+
     def test_waiting_for_a_port(self):
         self.fails(9, "did not appear within 1 s", "part.gcode", "--port", "tty:/dev/none", "-w", "1")
         process = self.start("--send", "M114", "--port", f"tty:{self.at}/printer", "--wait", "100")
