@@ -84,10 +84,12 @@ fio_status fio_descriptor_write(fio_transport *transport, const void *bytes, siz
     *taken = 0;
     if (self->lost)
         return closed(self);
-    size_t held = fio_descriptor_pending(transport);
-    if (held == 0)
-        self->since_empty = 0;
-    size_t room = held < FIO_DESCRIPTOR_HELD ? FIO_DESCRIPTOR_HELD - held : 0;
+    if (self->held_most + size > FIO_DESCRIPTOR_HELD) {
+        self->held_most = fio_descriptor_pending(transport);
+        if (self->held_most == 0)
+            self->since_empty = 0;
+    }
+    size_t room = self->held_most < FIO_DESCRIPTOR_HELD ? FIO_DESCRIPTOR_HELD - self->held_most : 0;
     if (size > room)
         size = room;
     if (size == 0)
@@ -98,6 +100,7 @@ fio_status fio_descriptor_write(fio_transport *transport, const void *bytes, siz
         return later() ? FIO_OK : broken(self, "writing");
     *taken = (size_t)put;
     self->since_empty += (size_t)put;
+    self->held_most += (size_t)put;
     return FIO_OK;
 }
 

@@ -16,7 +16,8 @@ typedef struct fio_descriptor {
     unsigned long question;
     bool counted;
     size_t since_empty;
-    double drain; /* s until some of a full queue has left */
+    size_t held_most; /* what it said last, and all since: it is asked only when that is too much */
+    double drain;     /* s until some of a full queue has left */
     bool lost;
     char name[160]; /* "tty:/dev/ttyACM0" */
     char loss[368];
