@@ -201,6 +201,50 @@ static void check_time(print_check *check, campaign_tally *tally, print_plan pla
     fio_machine_free(machine);
 }
 
+static void describe(const print_check *check) {
+    const print_plan *plan = check->plan;
+    printf("seed %llu: rate %lld, receive %d, slots %d, advanced %d, window %d/%d, busy %g, "
+           "parser %d, dtr %d, script %s, act %d at %g\n",
+           (unsigned long long)check->seed, (long long)plan->machine.rate,
+           plan->machine.receive_bytes, plan->machine.command_slots, plan->machine.advanced_ok,
+           plan->stream.window_lines, plan->stream.window_bytes, plan->machine.busy_seconds,
+           plan->machine.emergency_parser, plan->machine.reset_on_dtr,
+           plan->machine.script ? plan->machine.script : "-", plan->act, plan->act_at);
+}
+
+/* The whole print, of `runs` + 1 runs. */
+static void judge(print_check *check, campaign_tally *tally, const print_job *job,
+                  const print_result *result, int runs, const fio_machine_counts *counts) {
+    const print_plan *plan = check->plan;
+    const print_record *record = check->record;
+    if (result->status != FIO_OK && check->freely)
+        tally->given_up++;
+    else if (result->status != FIO_OK)
+        fail(check, "not completed in many runs", result->message);
+    else if (first_missing(record) < job->count && missing(record) > counts->undetectable)
+        fail(check, "said to be done, but not all was executed",
+             job->commands[first_missing(record)]);
+    for (int i = 0; i < job->count && runs == 0 && !check->freely; i++)
+        if (record->executed[i] > 1)
+            fail(check, "executed twice", job->commands[i]);
+    if (runs == 0 && result->status == FIO_OK && plan->act == PRINT_NOTHING && !check->freely &&
+        !plan->machine.script)
+        check_time(check, tally, *plan, job, result->seconds);
+    if (differences(record, counts->undetectable) > 0)
+        fail(check, "executed otherwise", record->first_wrong);
+    if (record->wrong > 0 && !check->freely && !check->failed)
+        printf("seed %llu: damage that no checksum tells: %s\n", (unsigned long long)check->seed,
+               record->first_wrong);
+    tally->differences += record->wrong;
+    tally->prints++;
+    tally->clean += runs == 0;
+    tally->faults += counts->faults;
+    tally->undetectable += counts->undetectable;
+    tally->overruns += counts->overruns;
+    tally->commands += job->count;
+    tally->failures += check->failed;
+}
+
 static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *tally) {
     static print_job job;
     static print_record record;
@@ -213,13 +257,7 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
     plan.verbose = verbose;
     print_check check = {&plan, &record, seed, freely, false};
     if (verbose)
-        printf("seed %llu: rate %lld, receive %d, slots %d, advanced %d, window %d/%d, busy %g, "
-               "parser %d, dtr %d, script %s, act %d at %g\n",
-               (unsigned long long)seed, (long long)plan.machine.rate, plan.machine.receive_bytes,
-               plan.machine.command_slots, plan.machine.advanced_ok, plan.stream.window_lines,
-               plan.stream.window_bytes, plan.machine.busy_seconds, plan.machine.emergency_parser,
-               plan.machine.reset_on_dtr, plan.machine.script ? plan.machine.script : "-", plan.act,
-               plan.act_at);
+        describe(&check);
     fio_machine *machine = print_machine(&record, &job, &plan);
     fio_stream_resume from = {.number = -1};
     bool anew = false;
@@ -269,33 +307,7 @@ static bool run_print(uint64_t seed, bool freely, bool verbose, campaign_tally *
         if (record.first >= 0 || runs == 0)
             record.resets = record.print_resets;
     }
-    const fio_machine_counts *counts = fio_machine_count(machine);
-    if (result.status != FIO_OK && freely)
-        tally->given_up++;
-    else if (result.status != FIO_OK)
-        fail(&check, "not completed in many runs", result.message);
-    else if (first_missing(&record) < job.count && missing(&record) > counts->undetectable)
-        fail(&check, "said to be done, but not all was executed",
-             job.commands[first_missing(&record)]);
-    for (int i = 0; i < job.count && runs == 0 && !freely; i++)
-        if (record.executed[i] > 1)
-            fail(&check, "executed twice", job.commands[i]);
-    if (runs == 0 && result.status == FIO_OK && plan.act == PRINT_NOTHING && !freely &&
-        !plan.machine.script)
-        check_time(&check, tally, plan, &job, result.seconds);
-    if (differences(&record, counts->undetectable) > 0)
-        fail(&check, "executed otherwise", record.first_wrong);
-    if (record.wrong > 0 && !freely && !check.failed)
-        printf("seed %llu: damage that no checksum tells: %s\n", (unsigned long long)seed,
-               record.first_wrong);
-    tally->differences += record.wrong;
-    tally->prints++;
-    tally->clean += runs == 0;
-    tally->faults += counts->faults;
-    tally->undetectable += counts->undetectable;
-    tally->overruns += counts->overruns;
-    tally->commands += job.count;
-    tally->failures += check.failed;
+    judge(&check, tally, &job, &result, runs, fio_machine_count(machine));
     fio_machine_free(machine);
     print_job_free(&job);
     return !check.failed;
