@@ -2,8 +2,9 @@
  *
  * An ok says nothing of which line it is for, and one too many looks like any other. So a text that
  * no other line has is sent for an echo (M118); where that is not known, M105, whose answer only
- * M105 gives: there one is under way at a time, and an answer right behind another one is taken for
- * its double. Rejected: M110 with its own number, which is answered by a plain ok. */
+ * M105 gives: it counts for the line whose turn it is by the oks, else for the first one without,
+ * and one right behind another is taken for its double. Rejected: M110 with its own number, which
+ * is answered by a plain ok. */
 #include <math.h>
 #include <string.h>
 
