@@ -13,6 +13,7 @@
 #include <isoslice/fill.h>
 #include <isoslice/gcode.h>
 #include <isoslice/geometry.h>
+#include <isoslice/lattice.h>
 #include <isoslice/path.h>
 #include <isoslice/status.h>
 
@@ -77,6 +78,9 @@ typedef enum iso_arc_fitting { ISO_ARCS_DISABLED, ISO_ARCS_EMIT_CENTER } iso_arc
 typedef enum iso_cut_keep { ISO_CUT_BOTH, ISO_CUT_UPPER, ISO_CUT_LOWER } iso_cut_keep;
 typedef enum iso_mirror { ISO_MIRROR_NONE, ISO_MIRROR_X, ISO_MIRROR_Y, ISO_MIRROR_Z } iso_mirror;
 
+typedef enum iso_check_solid { ISO_CHECK_OFF, ISO_CHECK_AUTO, ISO_CHECK_FULL } iso_check_solid;
+typedef enum iso_repair { ISO_REPAIR_MEND, ISO_REPAIR_VOLUME } iso_repair;
+
 typedef enum iso_option_kind {
     ISO_VALUE_BOOL,     /* bool */
     ISO_VALUE_INTEGER,  /* int32_t */
@@ -99,7 +103,10 @@ typedef enum iso_option_kind {
     ISO_VALUE_LABELS,  /* iso_label_style */
     ISO_VALUE_ARCS,    /* iso_arc_fitting */
     ISO_VALUE_CUT,     /* iso_cut_keep */
-    ISO_VALUE_MIRROR   /* iso_mirror */
+    ISO_VALUE_MIRROR,  /* iso_mirror */
+    ISO_VALUE_MAP,     /* iso_lattice_map */
+    ISO_VALUE_CHECK,   /* iso_check_solid */
+    ISO_VALUE_REPAIR   /* iso_repair */
 } iso_option_kind;
 
 static inline bool iso_option_is_word(iso_option_kind kind) {
@@ -134,6 +141,9 @@ typedef struct iso_options {
 #define ISO_FIELD_ARCS(key) int32_t key;
 #define ISO_FIELD_CUT(key) int32_t key;
 #define ISO_FIELD_MIRROR(key) int32_t key;
+#define ISO_FIELD_MAP(key) int32_t key;
+#define ISO_FIELD_CHECK(key) int32_t key;
+#define ISO_FIELD_REPAIR(key) int32_t key;
 #define ISO_FIELD_TEXT(key) char key[ISO_TEXT_SIZE];
 #define ISO_FIELD_PLACE(key) iso_place key;
 #define ISO_FIELD_POINTS(key) iso_points key;

@@ -33,7 +33,8 @@ typedef enum iso_fill_pattern {
     ISO_PATTERN_ARCHIMEDEAN,
     ISO_PATTERN_OCTAGRAM,
     ISO_PATTERN_MONOTONIC_LINES, /* as MONOTONIC, but no line is linked to another */
-    ISO_PATTERN_COUNT
+    ISO_PATTERN_COUNT,
+    ISO_PATTERN_LATTICE = 100 /* and on: an iso_lattice_pattern; not of iso_fill */
 } iso_fill_pattern;
 
 typedef struct iso_fill_options {

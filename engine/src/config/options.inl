@@ -30,6 +30,30 @@ ISO_WORD(PATTERN, ISO_PATTERN_HILBERT, "hilbertcurve")
 ISO_WORD(PATTERN, ISO_PATTERN_ARCHIMEDEAN, "archimedeanchords")
 ISO_WORD(PATTERN, ISO_PATTERN_OCTAGRAM, "octagramspiral")
 ISO_WORD(PATTERN, ISO_PATTERN_MONOTONIC_LINES, "monotoniclines")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_GYROID_SHEET, "gyroid_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_GYROID_SOLID, "gyroid_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_PRIMITIVE_SHEET, "primitive_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_PRIMITIVE_SOLID, "primitive_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_DIAMOND_SHEET, "diamond_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_DIAMOND_SOLID, "diamond_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_IWP_SHEET, "iwp_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_IWP_SOLID, "iwp_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_NEOVIUS_SHEET, "neovius_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_NEOVIUS_SOLID, "neovius_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_FISCHER_KOCH_SHEET, "fischer_koch_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_FISCHER_KOCH_SOLID, "fischer_koch_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_BCC_STRUTS, "bcc_struts")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_FCC_STRUTS, "fcc_struts")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_OCTET_STRUTS, "octet_struts")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_KELVIN_STRUTS, "kelvin_struts")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_DIAMOND_STRUTS, "diamond_struts")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_FOAM_STRUTS, "foam_struts")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_FOAM_SHEET, "foam_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_BONE_SHEET, "bone_sheet")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_BONE_SOLID, "bone_solid")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_VOXEL_CUBIC, "voxel_cubic")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_VOXEL_RANDOM, "voxel_random")
+ISO_WORD(PATTERN, ISO_PATTERN_LATTICE + ISO_LATTICE_VOXEL_FILE, "voxel_file")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN2, "marlin2")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_MARLIN, "marlin")
 ISO_WORD(FLAVOUR, ISO_FLAVOUR_KLIPPER, "klipper")
@@ -75,6 +99,16 @@ ISO_WORD(MIRROR, ISO_MIRROR_NONE, "none")
 ISO_WORD(MIRROR, ISO_MIRROR_X, "x")
 ISO_WORD(MIRROR, ISO_MIRROR_Y, "y")
 ISO_WORD(MIRROR, ISO_MIRROR_Z, "z")
+ISO_WORD(MAP, ISO_LATTICE_MAP_XYZ, "xyz")
+ISO_WORD(MAP, ISO_LATTICE_MAP_CYLINDER, "cylinder")
+ISO_WORD(MAP, ISO_LATTICE_MAP_SPHERE, "sphere")
+ISO_WORD(MAP, ISO_LATTICE_MAP_SKIN, "skin")
+ISO_WORD(MAP, ISO_LATTICE_MAP_SKIN_CYLINDER, "skin_cylinder")
+ISO_WORD(CHECK, ISO_CHECK_OFF, "off")
+ISO_WORD(CHECK, ISO_CHECK_AUTO, "auto")
+ISO_WORD(CHECK, ISO_CHECK_FULL, "full")
+ISO_WORD(REPAIR, ISO_REPAIR_MEND, "mend")
+ISO_WORD(REPAIR, ISO_REPAIR_VOLUME, "volume")
 #endif
 
 #ifdef ISO_OPTION
@@ -94,6 +128,17 @@ ISO_OPTION(mirror, MIRROR, "none", "", 0, 0, "Objects", "Mirror the model along 
 ISO_OPTION(cut, NUMBER, "0", "mm", 0, 10000, "Objects",
            "Cut the model at this height above its floor; 0 not at all.")
 ISO_OPTION(cut_keep, CUT, "both", "", 0, 0, "Objects", "Which part of a cut model is printed.")
+ISO_OPTION(
+    check_solid, CHECK, "auto", "", 0, 0, "Objects",
+    "Ask rays whether the slices' contours have material on the side they say: off, auto (models of several shells or that were mended), or full.")
+ISO_OPTION(
+    repair, REPAIR, "mend", "", 0, 0, "Objects",
+    "What becomes of a model that is open beyond mending: mend refuses it, volume makes a new surface around what its triangles enclose.")
+ISO_OPTION(repair_voxel, NUMBER, "0", "mm", 0, 100, "Objects",
+           "Fineness of repair = volume; 0 is 1/300 of the model's largest extent.")
+ISO_OPTION(
+    sheet_thickness, NUMBER, "0", "mm", 0, 100, "Objects",
+    "Give surfaces that stay open, sheets without an inside, this thickness; 0 refuses them.")
 ISO_OPTION(
     ensure_on_bed, BOOL, "1", "", 0, 1, "Objects",
     "Set every object down on the bed. Else z stays as the file has it, and what is below the bed isn't printed.")
@@ -202,6 +247,35 @@ ISO_OPTION(
 ISO_OPTION(infill_every_layers, INTEGER, "1", "", 1, 1000, "Infill",
            "Sparse infill of so many layers is printed at once, as thick as the nozzle allows.")
 ISO_OPTION(infill_first, BOOL, "0", "", 0, 1, "Infill", "Print the infill before the walls.")
+ISO_OPTION(
+    lattice_cell, TEXT, "5", "mm", 0, 0, "Lattices",
+    "Edge of a cell of fill_pattern's lattices: a number, or an expression in x, y, z, r, skin and grid (docs/lattices.md).")
+ISO_OPTION(
+    lattice_density, TEXT, "", "%", 0, 0, "Lattices",
+    "Density of a lattice: a number, or an expression as for lattice_cell. Empty takes fill_density.")
+ISO_OPTION(
+    lattice_map, MAP, "xyz", "", 0, 0, "Lattices",
+    "Along what the cells lie: xyz; around the part's axis (cylinder), its middle (sphere); or along its surface (skin, skin_cylinder).")
+ISO_OPTION(lattice_seed, INTEGER, "0", "", 0, 2147483647, "Lattices",
+           "Number that all that is random in a lattice comes from.")
+ISO_OPTION(lattice_pore, NUMBER, "0.4", "", 0.05, 1, "Lattices",
+           "Of voxel_random: size of its pores, in cells.")
+ISO_OPTION(
+    lattice_file, TEXT, "", "", 0, 0, "Lattices",
+    "Of voxel_file: a .vdb grid, or a folder or pattern (slice%03d.png) of grey pictures, that one cell is filled with.")
+ISO_OPTION(lattice_grid, TEXT, "", "", 0, 0, "Lattices",
+           "A .vdb file whose value the expressions know as grid.")
+ISO_OPTION(
+    lattice_skin, NUMBER, "0", "mm", 0, 100, "Lattices",
+    "Of isoslice lattice: thickness of the solid skin around the lattice; 0 leaves it open.")
+ISO_OPTION(
+    lattice_drain, NUMBERS, "", "mm", -10000, 10000, "Lattices",
+    "Holes through the bottom of a skinned lattice to let powder or resin out, as X,Y,X,Y... from the middle of the part.")
+ISO_OPTION(lattice_drain_diameter, NUMBER, "3", "mm", 0.1, 100, "Lattices",
+           "Diameter of the holes of lattice_drain.")
+ISO_OPTION(
+    lattice_open, BOOL, "0", "", 0, 1, "Lattices",
+    "Of isoslice lattice: refuse a part with pores that no powder can leave (exit code 8).")
 ISO_OPTION(top_solid_layers, INTEGER, "3", "", 0, 100000, "Solid layers, bridges, ironing",
            "Number of solid layers under every top surface; 0 for none.")
 ISO_OPTION(bottom_solid_layers, INTEGER, "3", "", 0, 100000, "Solid layers, bridges, ironing",
