@@ -11,8 +11,8 @@ typedef struct iso_combination {
 } iso_combination;
 
 static inline bool combine_is_asked_for(const iso_options *options) {
-    return options->infill_every_layers > 1 && options->fill_density > 0 &&
-           options->fill_density < 100;
+    return options->infill_every_layers > 1 && !settings_have_lattice(options) &&
+           options->fill_density > 0 && options->fill_density < 100;
 }
 
 /* of[i] = what layer i belongs to: infill_every_layers at a time from the second layer on, or as

@@ -8,9 +8,12 @@
 
 /* ---- the option ---- */
 
-static const char *const allowed[] = {"fill_density", "fill_angle", "fill_pattern", "infill_anchor",
-                                      "infill_anchor_max"};
-#define ALLOWED "fill_density, fill_angle, fill_pattern, infill_anchor or infill_anchor_max"
+static const char *const allowed[] = {"fill_density",    "fill_angle",        "fill_pattern",
+                                      "infill_anchor",   "infill_anchor_max", "lattice_cell",
+                                      "lattice_density", "lattice_map",       "lattice_seed",
+                                      "lattice_pore",    "lattice_file",      "lattice_grid"};
+#define ALLOWED                                                                                    \
+    "fill_density, fill_angle, fill_pattern, infill_anchor, infill_anchor_max or lattice_..."
 
 enum { WORD_SIZE = 256 };
 
@@ -126,12 +129,13 @@ static iso_status check_others(const iso_options *options, int32_t model_count) 
 static iso_status make_shell_options(iso_modifiers *modifiers) {
     bool sparse = false;
     for (int32_t i = 0; i < modifiers->count; i++)
-        sparse = sparse || modifiers->modifier[i].options->fill_density < 100;
-    if (!sparse || modifiers->options->fill_density < 100)
+        sparse = sparse || settings_density(modifiers->modifier[i].options) < 100;
+    if (!sparse || settings_density(modifiers->options) < 100)
         return ISO_OK;
     ISO_TRY(ISO_ALLOCATE(modifiers->shelled, 1));
     *modifiers->shelled = *modifiers->options;
     modifiers->shelled->fill_density = 99;
+    modifiers->shelled->fill_pattern = ISO_PATTERN_RECTILINEAR;
     return ISO_OK;
 }
 
@@ -194,12 +198,12 @@ iso_status modifiers_slice(iso_modifiers *modifiers, const iso_levels *levels) {
 
 /* ---- layers ---- */
 
-static const iso_options *options_of(const iso_modifiers *modifiers, int32_t k) {
+const iso_options *modifiers_options(const iso_modifiers *modifiers, int32_t k) {
     return k < modifiers->count ? modifiers->modifier[k].options : modifiers->options;
 }
 
 static bool is_full(const iso_modifiers *modifiers, int32_t k) {
-    return options_of(modifiers, k)->fill_density >= 100;
+    return settings_density(modifiers_options(modifiers, k)) >= 100;
 }
 
 static iso_status prepare(iso_modified *out, const iso_modifiers *modifiers) {
@@ -270,7 +274,8 @@ iso_status modifiers_split(iso_modified *out, const iso_modifiers *modifiers,
 bool modifiers_fill(iso_fill_options *fill, const iso_modifiers *modifiers, int32_t k,
                     int32_t index) {
     iso_layer_settings settings = {0};
-    settings_of_layer(&settings, options_of(modifiers, k), index, modifiers->levels->height[index]);
+    settings_of_layer(&settings, modifiers_options(modifiers, k), index,
+                      modifiers->levels->height[index]);
     *fill = settings.sparse;
     fill->z = iso_units(modifiers->levels->cut[index]);
     return settings.has_sparse;

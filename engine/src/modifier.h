@@ -47,6 +47,9 @@ iso_status modifiers_slice(iso_modifiers *modifiers, const iso_levels *levels) I
  * one. */
 const iso_options *modifiers_shell_options(const iso_modifiers *modifiers);
 
+/* The options of modifier k; k = count: of what is in none. */
+const iso_options *modifiers_options(const iso_modifiers *modifiers, int32_t k);
+
 /* A layer's sparse area, shared out; one for each thread. Zero-initialise, free at the end. */
 typedef struct iso_modified {
     int32_t count;

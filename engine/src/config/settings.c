@@ -1,6 +1,7 @@
 #include "config/settings.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* A wall no longer around than a circle of this radius is a small one; the figure is PrusaSlicer's.
  */
@@ -91,7 +92,7 @@ static void set_pattern(iso_fill_options *fill, int32_t pattern, int32_t index) 
  */
 static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                      double height) {
-    double density = options->fill_density / 100;
+    double density = settings_density(options) / 100;
     bool full = density >= 1;
     iso_role role = ISO_ROLE_INTERNAL_INFILL; /* even if it is full: its speed is that of infill */
     iso_bead solid = bead_of(options, ISO_ROLE_SOLID_INFILL, first, height);
@@ -160,7 +161,7 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
     s->bridge_angle_given = options->bridge_angle > 0;
     if (s->bridge_angle_given)
         s->bridge.angle = options->bridge_angle;
-    s->lid_least = options->fill_density < 100 ? 2 * bead.width : 0;
+    s->lid_least = settings_density(options) < 100 ? 2 * bead.width : 0;
     s->lid_anchor = LID_ANCHOR * bead.spacing;
     s->overhang = (iso_overhang_options){.reach = iso_units(options->nozzle_diameter) / 2,
                                          .shortest = wall.width,
@@ -176,7 +177,7 @@ static void set_bridges(iso_layer_settings *s, const iso_options *options, bool 
  * wider than what those are thinned by. */
 static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t index, bool first,
                       double height) {
-    bool full = options->fill_density >= 100;
+    bool full = settings_density(options) >= 100;
     int32_t spacing = bead_of(options, ISO_ROLE_SOLID_INFILL, first, height).spacing;
     int32_t every = options->solid_infill_every_layers;
     bool exact = options->ensure_vertical_shell_thickness;
@@ -188,16 +189,16 @@ static void set_shell(iso_layer_settings *s, const iso_options *options, int32_t
         .anchor = full ? 0 : SHELL_ANCHOR * spacing,
         .bridge_least = spacing,
         .bridge_anchor = (full ? BRIDGE_ANCHOR : SHELL_ANCHOR) * spacing,
-        .whole = !full && options->fill_density > 0 && every > 0 && index % every == 0,
+        .whole = !full && settings_density(options) > 0 && every > 0 && index % every == 0,
     };
     s->coarse = full ? spacing / 2 : exact || options->perimeters == 0 ? spacing / 64 : spacing / 4;
-    if (!full && options->fill_density > 0)
+    if (!full && settings_density(options) > 0)
         s->shell.sparse_least =
             (int64_t)(options->solid_infill_below_area * 2 * ISO_UNITS_PER_MM * ISO_UNITS_PER_MM);
 }
 
 iso_shell_depth settings_of_shells(const iso_options *options) {
-    bool full = options->fill_density >= 100;
+    bool full = settings_density(options) >= 100;
     iso_shell_depth depth = {.top_layers = options->top_solid_layers,
                              .bottom_layers = options->bottom_solid_layers,
                              .top_thickness = options->top_solid_min_thickness,
@@ -226,12 +227,25 @@ void settings_of_combination(iso_layer_settings *s, const iso_options *options, 
                              double height) {
     int32_t high = iso_units(height), width = s->sparse.width > high ? s->sparse.width : high;
     iso_fill_options *fill = &s->together;
-    *fill = iso_fill_defaults(iso_bead_of(width, high), options->fill_density / 100);
+    *fill = iso_fill_defaults(iso_bead_of(width, high), settings_density(options) / 100);
     fill->angle = options->fill_angle;
     fill->like = s->sparse.like;
     fill->anchor = s->sparse.anchor;
     fill->link_max = s->sparse.link_max;
     set_pattern(fill, options->fill_pattern, turn);
+}
+
+iso_lattice_options settings_of_lattice(const iso_options *options, char percent[32]) {
+    snprintf(percent, 32, "%.9f", options->fill_density);
+    return (iso_lattice_options){.pattern = options->fill_pattern - ISO_PATTERN_LATTICE,
+                                 .map = options->lattice_map,
+                                 .cell = options->lattice_cell,
+                                 .density = options->lattice_density[0] ? options->lattice_density
+                                                                        : percent,
+                                 .seed = (uint64_t)options->lattice_seed,
+                                 .pore = options->lattice_pore,
+                                 .file = options->lattice_file,
+                                 .grid = options->lattice_grid};
 }
 
 /* s to move the filament by `length`, from standing to standing. */

@@ -36,6 +36,18 @@ typedef struct iso_layer_settings {
     iso_fill_options together; /* of several layers at once; by settings_of_combination alone */
 } iso_layer_settings;
 
+static inline bool settings_have_lattice(const iso_options *options) {
+    return options->fill_pattern >= ISO_PATTERN_LATTICE;
+}
+/* Percent of the sparse fill; where an expression says it for a lattice, half: neither none nor
+ * all. */
+static inline double settings_density(const iso_options *options) {
+    bool graded = settings_have_lattice(options) && options->lattice_density[0] != 0;
+    return graded ? 50 : options->fill_density;
+}
+/* The options, as the owner of the texts, must outlive the result. `percent` is room for a text. */
+iso_lattice_options settings_of_lattice(const iso_options *options, char percent[32]);
+
 /* `index` counts from 0; `height` in mm. */
 void settings_of_layer(iso_layer_settings *settings, const iso_options *options, int32_t index,
                        double height);
