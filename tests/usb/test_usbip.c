@@ -219,6 +219,27 @@ static void test_unlinking(void) {
     leave(&end);
 }
 
+/* Header and data of an answer leave in one piece: vhci_hcd must not be caught between the two. On
+ * a socket that keeps packets apart, each call sends one. */
+static void test_an_answer_leaves_in_one_piece(void) {
+    static const uint8_t get_device[8] = {0x80, 6, 0, 1, 0, 0, 18, 0};
+    far_end end;
+    uint8_t urb[256];
+    int ends[2];
+    serve(&end);
+    fio_standin_close(end.server);
+    CHECK_EQUAL(0, socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends));
+    CHECK_EQUAL(FIO_OK,
+                fio_standin_usbip_socket(&end.server, end.machine, &end.pace, end.device, ends[1]));
+    size_t size = submit(&end, urb, 0, IN, 18, NULL);
+    memcpy(urb + 40, get_device, 8);
+    CHECK(ask(&end, ends[0], urb, size, 1));
+    CHECK_EQUAL(48 + 18, end.length);
+    CHECK(end.bytes[48] == 18 && end.bytes[56] == 0x41 && end.bytes[57] == 0x23);
+    close(ends[0]);
+    leave(&end);
+}
+
 /* Bytes that come one by one mean the same. */
 static void test_any_pieces(void) {
     static const uint8_t get_configuration[8] = {0x80, 6, 0, 2, 0, 0, 9, 0};
@@ -311,6 +332,7 @@ int main(void) {
     RUN(test_only_what_is_there_can_be_imported_and_once);
     RUN(test_a_conversation);
     RUN(test_unlinking);
+    RUN(test_an_answer_leaves_in_one_piece);
     RUN(test_any_pieces);
     RUN(test_what_makes_no_sense_is_hung_up_on);
     RUN(test_a_thousand_waiting_transfers_are_too_many);

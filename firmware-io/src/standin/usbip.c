@@ -210,16 +210,25 @@ static bool hear(usbip *s, double now) {
     }
 }
 
+/* What is left of a message, header and data in one call: a kernel that has a header takes it that
+ * the data are there as well. Until it has read them, Linux' vhci_hcd can't give the URB up, and
+ * whoever unbinds its driver meanwhile spins with interrupts off (usb_hcd_flush_endpoint()): on a
+ * machine of one processor we would never get to send the rest. */
+static ssize_t send_rest(int file, message *of) {
+    size_t header = of->sent < FIO_USBIP_HEADER ? FIO_USBIP_HEADER - of->sent : 0;
+    size_t data = of->sent + header - FIO_USBIP_HEADER;
+    struct iovec parts[2] = {{of->header + FIO_USBIP_HEADER - header, header}};
+    if (of->size > data)
+        parts[1] = (struct iovec){of->data->urb.data + data, of->size - data};
+    return sendmsg(file, &(struct msghdr){.msg_iov = parts, .msg_iovlen = 2}, MSG_NOSIGNAL);
+}
+
 /* False if the far end is gone. */
 static bool tell(usbip *s) {
     s->full = false;
     while (s->messages) {
         message *now = s->messages;
-        bool header = now->sent < FIO_USBIP_HEADER;
-        const uint8_t *bytes =
-            header ? now->header + now->sent : now->data->urb.data + (now->sent - FIO_USBIP_HEADER);
-        size_t size = FIO_USBIP_HEADER + (header ? 0 : now->size) - now->sent;
-        ssize_t put = size ? send(s->importer->file, bytes, size, MSG_NOSIGNAL) : 0;
+        ssize_t put = send_rest(s->importer->file, now);
         if (put < 0 && (errno == EAGAIN || errno == EINTR)) {
             s->full = true;
             return true;
