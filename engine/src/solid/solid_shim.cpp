@@ -1,0 +1,174 @@
+/* Embree, 3 or 4, as a tree of boxes. */
+#include <cmath>
+#include <limits>
+#include <new>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "solid/tree.h"
+
+#if RTC_VERSION_MAJOR >= 4
+using context_type = RTCRayQueryContext;
+#define INITIALIZE_CONTEXT rtcInitRayQueryContext
+#else
+using context_type = RTCIntersectContext;
+#define INITIALIZE_CONTEXT rtcInitIntersectContext
+#endif
+
+struct solid_tree {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    solid_tree() = default;
+    solid_tree(const solid_tree &) = delete;
+    solid_tree &operator=(const solid_tree &) = delete;
+    ~solid_tree() {
+        if (scene)
+            rtcReleaseScene(scene);
+        if (device)
+            rtcReleaseDevice(device);
+    }
+};
+
+namespace {
+
+struct ray_context {
+    context_type embree; /* first: callbacks get a pointer to it */
+    int32_t *found;
+    int64_t count, capacity;
+};
+
+void bounds(const RTCBoundsFunctionArguments *arguments) {
+    const float *box = static_cast<const float *>(arguments->geometryUserPtr) +
+                       6 * static_cast<size_t>(arguments->primID);
+    RTCBounds *out = arguments->bounds_o;
+    out->lower_x = box[0];
+    out->lower_y = box[1];
+    out->lower_z = box[2];
+    out->upper_x = box[3];
+    out->upper_y = box[4];
+    out->upper_z = box[5];
+}
+
+/* Take note of the box and report no hit, so that the ray goes on through all of them. */
+void note(const RTCOccludedFunctionNArguments *arguments) {
+    if (!arguments->valid[0])
+        return;
+    ray_context *context = reinterpret_cast<ray_context *>(arguments->context);
+    if (context->count < context->capacity)
+        context->found[context->count] = static_cast<int32_t>(arguments->primID);
+    context->count++;
+}
+
+const char *describe(RTCDevice device) {
+    switch (rtcGetDeviceError(device)) {
+    case RTC_ERROR_NONE:
+        return nullptr;
+    case RTC_ERROR_OUT_OF_MEMORY:
+        return "out of memory";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+        return "Embree does not know this processor";
+    default:
+        return "Embree refused a call";
+    }
+}
+
+const char *build(solid_tree *tree, const float *box, int32_t count) {
+    /* One thread: Embree's own would wait in a loop, and processor time is what counts. */
+    tree->device = rtcNewDevice("threads=1,user_threads=1,set_affinity=0,verbose=0");
+    if (!tree->device)
+        return describe(nullptr) ? describe(nullptr) : "Embree does not start";
+    tree->scene = rtcNewScene(tree->device);
+    if (!tree->scene)
+        return describe(tree->device);
+    rtcSetSceneFlags(tree->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(tree->scene, RTC_BUILD_QUALITY_LOW);
+    RTCGeometry geometry = rtcNewGeometry(tree->device, RTC_GEOMETRY_TYPE_USER);
+    if (!geometry)
+        return describe(tree->device);
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+    rtcSetGeometryUserData(geometry, const_cast<float *>(box));
+    rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+    rtcSetGeometryOccludedFunction(geometry, note);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(tree->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(tree->scene);
+    return describe(tree->device);
+}
+
+const char *tree_new(solid_tree **result, const float *box, int32_t count) {
+    *result = nullptr;
+    try {
+        solid_tree *tree = new solid_tree;
+        if (const char *problem = build(tree, box, count)) {
+            delete tree;
+            return problem;
+        }
+        *result = tree;
+        return nullptr;
+    } catch (const std::bad_alloc &) {
+        return "out of memory";
+    } catch (...) {
+        return "Embree threw something";
+    }
+}
+
+void tree_free(solid_tree *tree) {
+    delete tree;
+}
+
+void shoot(ray_context *context, const solid_tree *tree, const float *origin, int32_t direction) {
+    RTCRay ray = {};
+    ray.org_x = origin[0];
+    ray.org_y = origin[1];
+    ray.org_z = origin[2];
+    float *way = &ray.dir_x;
+    way[direction / 2] = direction % 2 ? -1.0f : 1.0f;
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = ~0u;
+#if RTC_VERSION_MAJOR >= 4
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context->embree;
+    rtcOccluded1(tree->scene, &ray, &arguments);
+#else
+    rtcOccluded1(tree->scene, &context->embree, &ray);
+#endif
+}
+
+const char *tree_rays(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
+                      const solid_rays *rays) {
+    *done = 0;
+    first[0] = 0;
+    try {
+        ray_context context;
+        INITIALIZE_CONTEXT(&context.embree);
+        for (int32_t i = 0; i < rays->count; i++) {
+            context.found = found + first[i];
+            context.count = 0;
+            context.capacity = rays->capacity - first[i];
+            shoot(&context, tree, rays->origin + 3 * static_cast<size_t>(i), rays->direction);
+            if (context.count > context.capacity) {
+                if (i == 0)
+                    first[1] = static_cast<int32_t>(context.count);
+                return nullptr;
+            }
+            first[i + 1] = first[i] + static_cast<int32_t>(context.count);
+            *done = i + 1;
+        }
+        return nullptr;
+    } catch (...) {
+        return "Embree threw something";
+    }
+}
+
+} // namespace
+
+MODULE_TABLE const solid_table isoslice_module = {
+    {MODULE_VERSION_SOLID}, tree_new, tree_free, tree_rays};

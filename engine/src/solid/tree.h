@@ -1,0 +1,37 @@
+/* The table of isoslice-solid.so: which of many boxes does a ray along an axis meet?
+ *
+ * What it answers decides nothing by itself: it says where to look. Every box that holds a point of
+ * the ray, both closed, is among the answers; others may be. */
+#ifndef ISO_SOLID_TREE_H
+#define ISO_SOLID_TREE_H
+
+#include <stdint.h>
+
+#include "solid/module.h"
+
+typedef struct solid_tree solid_tree;
+
+typedef struct solid_rays {
+    const float *origin;
+    int32_t count;
+    int32_t direction;
+    int32_t capacity;
+} solid_rays;
+
+/* All return NULL, or what went wrong. */
+typedef struct solid_table {
+    module_header header;
+
+    /* box[6 i]: least x y z, largest x y z of box i; not kept. */
+    const char *(*tree_new)(solid_tree **tree, const float *box, int32_t count);
+    void (*tree_free)(solid_tree *tree);
+
+    /* Boxes that the ray from origin[3 i] in direction 2 axis + backward meets, in the tree's
+     * order: found[first[i]] to found[first[i + 1] - 1]. Rays are taken until the next one's boxes
+     * would go beyond `capacity`, and *done says how many were. *done = 0: `capacity` is less than
+     * what the first ray needs, which is first[1]. Any number of threads at once. */
+    const char *(*tree_rays)(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
+                             const solid_rays *rays);
+} solid_table;
+
+#endif
