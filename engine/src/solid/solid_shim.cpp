@@ -64,32 +64,38 @@ void note(const RTCOccludedFunctionNArguments *arguments) {
     context->count++;
 }
 
-const char *describe(RTCDevice device) {
+iso_status status_of(RTCDevice device) {
     switch (rtcGetDeviceError(device)) {
     case RTC_ERROR_NONE:
-        return nullptr;
+        return ISO_OK;
     case RTC_ERROR_OUT_OF_MEMORY:
-        return "out of memory";
+        return ISO_NO_MEMORY;
     case RTC_ERROR_UNSUPPORTED_CPU:
-        return "Embree does not know this processor";
+        return ISO_BAD_CONFIG;
     default:
-        return "Embree refused a call";
+        return ISO_BUG;
     }
 }
 
-const char *build(solid_tree *tree, const float *box, int32_t count) {
+/* Of a call that gave nothing back: never ISO_OK. */
+iso_status failure_of(RTCDevice device) {
+    iso_status status = status_of(device);
+    return status == ISO_OK ? ISO_BUG : status;
+}
+
+iso_status build(solid_tree *tree, const float *box, int32_t count) {
     /* One thread: Embree's own would wait in a loop, and processor time is what counts. */
     tree->device = rtcNewDevice("threads=1,user_threads=1,set_affinity=0,verbose=0");
     if (!tree->device)
-        return describe(nullptr) ? describe(nullptr) : "Embree does not start";
+        return failure_of(nullptr);
     tree->scene = rtcNewScene(tree->device);
     if (!tree->scene)
-        return describe(tree->device);
+        return failure_of(tree->device);
     rtcSetSceneFlags(tree->scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(tree->scene, RTC_BUILD_QUALITY_LOW);
     RTCGeometry geometry = rtcNewGeometry(tree->device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry)
-        return describe(tree->device);
+        return failure_of(tree->device);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
     rtcSetGeometryUserData(geometry, const_cast<float *>(box));
@@ -99,23 +105,24 @@ const char *build(solid_tree *tree, const float *box, int32_t count) {
     rtcAttachGeometry(tree->scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(tree->scene);
-    return describe(tree->device);
+    return status_of(tree->device);
 }
 
-const char *tree_new(solid_tree **result, const float *box, int32_t count) {
+iso_status tree_new(solid_tree **result, const float *box, int32_t count) {
     *result = nullptr;
     try {
         solid_tree *tree = new solid_tree;
-        if (const char *problem = build(tree, box, count)) {
+        iso_status status = build(tree, box, count);
+        if (status != ISO_OK) {
             delete tree;
-            return problem;
+            return status;
         }
         *result = tree;
-        return nullptr;
+        return ISO_OK;
     } catch (const std::bad_alloc &) {
-        return "out of memory";
+        return ISO_NO_MEMORY;
     } catch (...) {
-        return "Embree threw something";
+        return ISO_BUG;
     }
 }
 
@@ -142,8 +149,8 @@ void shoot(ray_context *context, const solid_tree *tree, const float *origin, in
 #endif
 }
 
-const char *tree_rays(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
-                      const solid_rays *rays) {
+iso_status tree_rays(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
+                     const solid_rays *rays) {
     *done = 0;
     first[0] = 0;
     try {
@@ -153,18 +160,18 @@ const char *tree_rays(int32_t *found, int32_t *first, int32_t *done, const solid
             context.found = found + first[i];
             context.count = 0;
             context.capacity = rays->capacity - first[i];
-            shoot(&context, tree, rays->origin + 3 * static_cast<size_t>(i), rays->direction);
+            shoot(&context, tree, rays->origin + 3 * static_cast<size_t>(i), rays->direction[i]);
             if (context.count > context.capacity) {
                 if (i == 0)
                     first[1] = static_cast<int32_t>(context.count);
-                return nullptr;
+                return ISO_OK;
             }
             first[i + 1] = first[i] + static_cast<int32_t>(context.count);
             *done = i + 1;
         }
-        return nullptr;
+        return ISO_OK;
     } catch (...) {
-        return "Embree threw something";
+        return ISO_BUG;
     }
 }
 

@@ -13,25 +13,25 @@ typedef struct solid_tree solid_tree;
 
 typedef struct solid_rays {
     const float *origin;
+    const uint8_t *direction;
     int32_t count;
-    int32_t direction;
     int32_t capacity;
 } solid_rays;
 
-/* All return NULL, or what went wrong. */
+/* ISO_NO_MEMORY; ISO_BAD_CONFIG: no processor for Embree; ISO_BUG: Embree does not like a call. */
 typedef struct solid_table {
     module_header header;
 
     /* box[6 i]: least x y z, largest x y z of box i; not kept. */
-    const char *(*tree_new)(solid_tree **tree, const float *box, int32_t count);
+    iso_status (*tree_new)(solid_tree **tree, const float *box, int32_t count);
     void (*tree_free)(solid_tree *tree);
 
-    /* Boxes that the ray from origin[3 i] in direction 2 axis + backward meets, in the tree's
+    /* Boxes that the ray from origin[3 i] in direction[i] = 2 axis + backward meets, in the tree's
      * order: found[first[i]] to found[first[i + 1] - 1]. Rays are taken until the next one's boxes
      * would go beyond `capacity`, and *done says how many were. *done = 0: `capacity` is less than
      * what the first ray needs, which is first[1]. Any number of threads at once. */
-    const char *(*tree_rays)(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
-                             const solid_rays *rays);
+    iso_status (*tree_rays)(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
+                            const solid_rays *rays);
 } solid_table;
 
 #endif
