@@ -27,6 +27,11 @@ typedef struct iso_mesh_defects {
     int64_t inverted_shells;   /* turned inside out */
     int64_t holes_closed;      /* boundary loops closed by caps */
     double cap_area;           /* mm^2 of those caps */
+    int64_t sheets;            /* open surfaces that were given a thickness */
+    double sheet_thickness;    /* mm, of those */
+    double voxel;              /* mm; above 0: the surface was made anew on a grid so fine */
+    double largest_error;      /* mm, of the new surface to the triangles that were read */
+    double mean_error;         /* mm */
     int64_t shells;            /* connected components of the result */
 } iso_mesh_defects;
 
@@ -57,6 +62,22 @@ ISO_API iso_status iso_mesh_read(iso_mesh *mesh, const char *path) ISO_MUST_CHEC
 /* The same from memory: `triangle` is [9 count] floats, x y z of three corners each. */
 ISO_API iso_status iso_mesh_from_triangles(iso_mesh *mesh, const float *triangle,
                                            int64_t count) ISO_MUST_CHECK;
+
+/* What becomes of surfaces that mending alone would refuse. Zeros: they are refused. */
+typedef struct iso_mesh_options {
+    int32_t volume; /* not 0: whatever was read is made anew, around what its triangles enclose; or,
+                     * with a sheet_thickness, around all that is within half of it */
+    double voxel;   /* mm, of the grid that this is done on; 0: 1/300 of the box's largest side */
+    double sheet_thickness; /* mm, that open surfaces are given; 0: none */
+} iso_mesh_options;
+
+/* options may be NULL: zeros. ISO_BAD_CONFIG: a volume was asked for, and the module that makes it
+ * is missing. */
+ISO_API iso_status iso_mesh_read_with(iso_mesh *mesh, const char *path,
+                                      const iso_mesh_options *options) ISO_MUST_CHECK;
+ISO_API iso_status iso_mesh_from_triangles_with(iso_mesh *mesh, const float *triangle,
+                                                int64_t count,
+                                                const iso_mesh_options *options) ISO_MUST_CHECK;
 
 ISO_API void iso_mesh_free(iso_mesh *mesh);
 

@@ -60,8 +60,9 @@ iso_status iso_report_warn_mended(iso_report *report, const char *path,
                 {found->welded_vertices, "vertices welded"},
                 {found->flipped_triangles, "triangles turned over"},
                 {found->inverted_shells, "shells turned inside out"},
-                {found->holes_closed, "holes closed"}};
-    char text[512];
+                {found->holes_closed, "holes closed"},
+                {found->sheets, "sheets given a thickness"}};
+    char text[1024];
     size_t length = 0;
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         if (list[i].count > 0)
@@ -69,6 +70,9 @@ iso_status iso_report_warn_mended(iso_report *report, const char *path,
                 (size_t)snprintf(text + length, sizeof text - length, "%s%lld %s",
                                  length > 0 ? ", " : "", (long long)list[i].count, list[i].what);
     }
+    if (found->sheets > 0)
+        length += (size_t)snprintf(text + length, sizeof text - length, " of %g mm",
+                                   found->sheet_thickness);
     return length == 0 ? ISO_OK : iso_report_warn(report, "mesh-mended", "%s: %s", path, text);
 }
 
@@ -116,6 +120,8 @@ void iso_json_defects(iso_json *json, const iso_mesh_defects *defects) {
     iso_json_integer(json, "inverted_shells", defects->inverted_shells);
     iso_json_integer(json, "holes_closed", defects->holes_closed);
     iso_json_number(json, "cap_area_mm2", defects->cap_area);
+    iso_json_integer(json, "sheets", defects->sheets);
+    iso_json_number(json, "sheet_thickness_mm", defects->sheet_thickness);
     iso_json_end(json, '}');
 }
 

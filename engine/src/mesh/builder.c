@@ -291,14 +291,19 @@ static void resolve(iso_mesh *mesh) {
     }
 }
 
-iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b) {
+static double thickness_of(const iso_mesh_options *options) {
+    return options ? options->sheet_thickness : 0;
+}
+
+iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b,
+                                   const iso_mesh_options *options) {
     *mesh = (iso_mesh){0};
     resolve(&b->mesh);
     iso_release(b->head);
     iso_release(b->table);
     iso_release(b->crowd);
     b->head = b->table = b->crowd = NULL;
-    iso_status status = iso_mesh_repair(&b->mesh, b->open, b->excess);
+    iso_status status = iso_mesh_repair(&b->mesh, b->open, b->excess, thickness_of(options));
     if (status == ISO_OK) {
         *mesh = b->mesh;
         b->mesh = (iso_mesh){0};
@@ -308,6 +313,11 @@ iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b) {
 }
 
 iso_status iso_mesh_from_triangles(iso_mesh *mesh, const float *triangle, int64_t count) {
+    return iso_mesh_from_triangles_with(mesh, triangle, count, NULL);
+}
+
+iso_status iso_mesh_from_triangles_with(iso_mesh *mesh, const float *triangle, int64_t count,
+                                        const iso_mesh_options *options) {
     *mesh = (iso_mesh){0};
     if (count <= 0)
         return iso_fail(ISO_UNREADABLE, "no triangles");
@@ -323,5 +333,5 @@ iso_status iso_mesh_from_triangles(iso_mesh *mesh, const float *triangle, int64_
         iso_mesh_builder_discard(&builder);
         return status;
     }
-    return iso_mesh_builder_finish(mesh, &builder);
+    return iso_mesh_builder_finish(mesh, &builder, options);
 }

@@ -41,8 +41,10 @@ iso_status iso_mesh_builder_add(iso_mesh_builder *builder, const void *triangle,
 /* Index of the first triangle with a coordinate that is not finite or too large, or `count`. */
 int64_t iso_mesh_builder_find_absurd(const void *triangle, int64_t count, size_t stride);
 
-/* Hand the mesh over, mended, or say why not; discards the builder either way. */
-iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *builder) ISO_MUST_CHECK;
+/* Hand the mesh over, mended, or say why not; discards the builder either way. options may be NULL.
+ */
+iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *builder,
+                                   const iso_mesh_options *options) ISO_MUST_CHECK;
 
 void iso_mesh_builder_discard(iso_mesh_builder *builder);
 

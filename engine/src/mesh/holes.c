@@ -20,6 +20,8 @@ typedef struct closer {
     iso_vec3 *apex; /* [loops] */
     int32_t loops;
     int64_t open;
+    sheets *marks; /* or NULL */
+    bool *torn;    /* [triangle], if there are marks: its shell has open edges */
 } closer;
 
 static int32_t start_of(const closer *c, int32_t open_dart) {
@@ -120,6 +122,20 @@ static double cap_area(const closer *c, int32_t loop) {
     return sum;
 }
 
+static iso_status find_torn(closer *c, int32_t shells) {
+    const iso_mesh *mesh = c->mesh;
+    bool *shell;
+    ISO_TRY(ISO_ALLOCATE(c->torn, mesh->triangle_count));
+    ISO_TRY(ISO_ALLOCATE(shell, shells));
+    memset(shell, 0, (size_t)shells * sizeof *shell);
+    for (int32_t a = 0; a < 3 * mesh->triangle_count; a++)
+        shell[c->shell[a / 3]] |= mesh->opposite[a] < 0;
+    for (int32_t t = 0; t < mesh->triangle_count; t++)
+        c->torn[t] = shell[c->shell[t]];
+    iso_release(shell);
+    return ISO_OK;
+}
+
 /* Triangles that lost all their neighbours still hang on by their corners: for the share of the
  * caps, shells that have a vertex in common are one. */
 static void join_at_vertices(closer *c, int32_t *part, int32_t shells) {
@@ -145,17 +161,32 @@ static iso_status refuse(const closer *c, const share *s) {
     if (s->area > 0)
         return iso_fail(ISO_UNSLICEABLE,
                         "the surface is open: a shell has %lld open edges, and closing them would "
-                        "add %.3g %% to its area (up to %g %% is mended); give it a thickness, or "
-                        "close it in the program that made it",
+                        "add %.3g %% to its area (up to %g %% is mended); --sheet-thickness gives "
+                        "it a thickness, --repair volume makes a new surface around what it "
+                        "encloses, or close it in the program that made it",
                         (long long)s->open, 100 * s->caps / s->area, 100 * ISO_MESH_CAP_SHARE);
     return iso_fail(ISO_UNSLICEABLE,
                     "the surface is open: a shell without area has %lld open edges",
                     (long long)s->open);
 }
 
+static bool is_mendable(const share *s) {
+    return s->caps <= ISO_MESH_CAP_SHARE * s->area && (s->area > 0 || s->open == 0);
+}
+
+/* Of shells that hang together by vertices alone, those that are closed stay. */
+static void mark_sheets(closer *c, const share *shares) {
+    for (int32_t t = 0; t < c->mesh->triangle_count; t++)
+        if (c->torn[t] && !is_mendable(&shares[c->shell[t]])) {
+            c->marks->mark[t] = 1;
+            c->marks->marked++;
+        }
+}
+
 static iso_status check_shares(closer *c, share *shares, int32_t shells) {
     iso_mesh *mesh = c->mesh;
     const iso_vec3 *position = mesh->position;
+    mesh->defects.cap_area = 0;
     memset(shares, 0, (size_t)shells * sizeof *shares);
     for (int32_t t = 0; t < mesh->triangle_count; t++)
         shares[c->shell[t]].area +=
@@ -171,11 +202,14 @@ static iso_status check_shares(closer *c, share *shares, int32_t shells) {
     const share *worst = NULL;
     for (int32_t i = 0; i < shells; i++) {
         const share *s = &shares[i];
-        bool mendable = s->caps <= ISO_MESH_CAP_SHARE * s->area && (s->area > 0 || s->open == 0);
-        if (!mendable && (!worst || s->open > worst->open))
+        if (!is_mendable(s) && (!worst || s->open > worst->open))
             worst = s;
     }
-    return worst ? refuse(c, worst) : ISO_OK;
+    if (worst && c->marks) {
+        mark_sheets(c, shares);
+        mesh->defects.cap_area = 0;
+    }
+    return worst && !c->marks ? refuse(c, worst) : ISO_OK;
 }
 
 static void join(iso_mesh *mesh, int32_t a, int32_t b) {
@@ -238,6 +272,8 @@ static iso_status close_all(closer *c, share **shares) {
     ISO_TRY(ISO_ALLOCATE(c->dart, c->open));
     ISO_TRY(ISO_ALLOCATE(c->first, c->open + 1));
     ISO_TRY(iso_mesh_find_shells(&c->shell, &shells, c->mesh));
+    if (c->marks)
+        ISO_TRY(find_torn(c, shells));
     ISO_TRY(ISO_ALLOCATE(part, shells));
     join_at_vertices(c, part, shells);
     iso_release(part);
@@ -247,14 +283,15 @@ static iso_status close_all(closer *c, share **shares) {
         c->apex[loop] = centroid(c, loop);
     ISO_TRY(ISO_ALLOCATE(*shares, shells));
     ISO_TRY(check_shares(c, *shares, shells));
-    return close_loops(c);
+    return c->marks && c->marks->marked > 0 ? ISO_OK : close_loops(c);
 }
 
-iso_status iso_mesh_close_holes(iso_mesh *mesh, int64_t open) {
-    closer c = {.mesh = mesh, .open = open};
+iso_status iso_mesh_close_holes(iso_mesh *mesh, int64_t open, sheets *marks) {
+    closer c = {.mesh = mesh, .open = open, .marks = marks};
     share *shares = NULL;
     iso_status status = close_all(&c, &shares);
     iso_release(c.shell);
+    iso_release(c.torn);
     iso_release(c.place);
     iso_release(c.path);
     iso_release(c.dart);

@@ -10,7 +10,9 @@ typedef struct walker {
     iso_mesh *mesh;
     uint8_t *state;
     int32_t *queue;
-    int32_t count; /* triangles of the queue so far */
+    int32_t count;  /* triangles of the queue so far */
+    sheets *marks;  /* or NULL */
+    bool one_sided; /* the patch at hand */
 } walker;
 
 /* opposite[] holds the other dart of each two-dart edge, whichever way it runs. */
@@ -40,13 +42,22 @@ static iso_status visit(walker *w, int32_t triangle) {
             w->queue[w->count++] = b / 3;
         } else if (w->state[b / 3] != wanted) {
             iso_vec3 p = mesh->position[mesh->origin[a]];
-            return iso_fail(ISO_UNSLICEABLE,
-                            "the surface has one side only, like a Moebius strip (seen near %g, "
-                            "%g, %g): no orientation of its triangles agrees",
-                            p.x, p.y, p.z);
+            w->one_sided = true;
+            if (!w->marks)
+                return iso_fail(ISO_UNSLICEABLE,
+                                "the surface has one side only, like a Moebius strip (seen near "
+                                "%g, %g, %g): no orientation of its triangles agrees; "
+                                "--sheet-thickness gives it a thickness",
+                                p.x, p.y, p.z);
         }
     }
     return ISO_OK;
+}
+
+static void mark_patch(walker *w, int32_t begin) {
+    for (int32_t i = begin; i < w->count; i++)
+        w->marks->mark[w->queue[i]] = 1;
+    w->marks->marked += w->count - begin;
 }
 
 static void turn(iso_mesh *mesh, int32_t triangle) {
@@ -59,9 +70,14 @@ static void turn(iso_mesh *mesh, int32_t triangle) {
 static iso_status orient_patch(int64_t *turned, walker *w, int32_t first) {
     int32_t begin = w->count;
     w->state[first] = AS_IS;
+    w->one_sided = false;
     w->queue[w->count++] = first;
     for (int32_t i = begin; i < w->count; i++)
         ISO_TRY(visit(w, w->queue[i]));
+    if (w->one_sided) {
+        mark_patch(w, begin);
+        return ISO_OK;
+    }
     int32_t minority = 0;
     for (int32_t i = begin; i < w->count; i++)
         minority += w->state[w->queue[i]] == TURNED;
@@ -77,11 +93,12 @@ static iso_status orient_patch(int64_t *turned, walker *w, int32_t first) {
     return ISO_OK;
 }
 
-iso_status iso_mesh_orient(int64_t *turned, iso_mesh *mesh, const iso_mesh_edges *edges) {
+iso_status iso_mesh_orient(int64_t *turned, iso_mesh *mesh, const iso_mesh_edges *edges,
+                           sheets *marks) {
     *turned = 0;
     if (!join(mesh, edges))
         return ISO_OK;
-    walker w = {.mesh = mesh};
+    walker w = {.mesh = mesh, .marks = marks};
     iso_status status = ISO_ALLOCATE(w.state, mesh->triangle_count);
     if (status == ISO_OK)
         status = ISO_ALLOCATE(w.queue, mesh->triangle_count);

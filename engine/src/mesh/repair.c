@@ -15,11 +15,15 @@ void iso_mesh_drop_degenerate(iso_mesh *mesh) {
     mesh->triangle_count = kept;
 }
 
-static iso_status link_again(int64_t *open, iso_mesh *mesh) {
+static iso_status link_again(int64_t *open, iso_mesh *mesh, sheets *marks) {
     iso_mesh_edges edges;
     int64_t turned = 0;
+    if (marks) {
+        memset(marks->mark, 0, (size_t)mesh->triangle_count);
+        marks->marked = 0;
+    }
     ISO_TRY(iso_mesh_edges_new(&edges, mesh));
-    iso_status status = iso_mesh_orient(&turned, mesh, &edges);
+    iso_status status = iso_mesh_orient(&turned, mesh, &edges, marks);
     if (status == ISO_OK && turned > 0) {
         mesh->defects.flipped_triangles += turned;
         iso_mesh_edges_free(&edges);
@@ -50,7 +54,7 @@ static iso_status none_left(const iso_mesh *mesh) {
 
 /* Weld the seams if that leaves fewer edges open, else let everything be. `saved` holds origin[].
  */
-static iso_status try_seams(int64_t *open, iso_mesh *mesh, int32_t *saved) {
+static iso_status try_seams(int64_t *open, iso_mesh *mesh, int32_t *saved, sheets *marks) {
     int32_t triangles = mesh->triangle_count;
     iso_mesh_defects before = mesh->defects;
     int64_t merged, left;
@@ -59,7 +63,7 @@ static iso_status try_seams(int64_t *open, iso_mesh *mesh, int32_t *saved) {
         return ISO_OK;
     iso_mesh_drop_degenerate(mesh);
     ISO_TRY(iso_mesh_drop_coincident(mesh));
-    iso_status status = mesh->triangle_count ? link_again(&left, mesh) : ISO_UNSLICEABLE;
+    iso_status status = mesh->triangle_count ? link_again(&left, mesh, marks) : ISO_UNSLICEABLE;
     if (status == ISO_OK && left < *open) {
         mesh->defects.welded_vertices = merged;
         *open = left;
@@ -70,14 +74,14 @@ static iso_status try_seams(int64_t *open, iso_mesh *mesh, int32_t *saved) {
     mesh->triangle_count = triangles;
     mesh->defects = before;
     memcpy(mesh->origin, saved, 3 * (size_t)triangles * sizeof *saved);
-    return link_again(open, mesh);
+    return link_again(open, mesh, marks);
 }
 
-static iso_status weld_seams(int64_t *open, iso_mesh *mesh) {
+static iso_status weld_seams(int64_t *open, iso_mesh *mesh, sheets *marks) {
     int32_t *saved;
     ISO_TRY(ISO_ALLOCATE(saved, 3 * (int64_t)mesh->triangle_count));
     memcpy(saved, mesh->origin, 3 * (size_t)mesh->triangle_count * sizeof *saved);
-    iso_status status = try_seams(open, mesh, saved);
+    iso_status status = try_seams(open, mesh, saved, marks);
     iso_release(saved);
     return status;
 }
@@ -119,30 +123,57 @@ static void find_box(iso_mesh *mesh) {
     mesh->max = max;
 }
 
-static iso_status mend_edges(iso_mesh *mesh, int64_t open, int64_t excess) {
+/* What can't be closed is taken out. The rest is linked anew, which may open it. */
+static iso_status close_or_take(iso_mesh *mesh, int64_t open, sheets *marks) {
+    while (mesh->triangle_count > 0) {
+        if (open > 0 && marks->marked == 0)
+            ISO_TRY(iso_mesh_close_holes(mesh, open, marks));
+        if (marks->marked == 0)
+            return ISO_OK;
+        ISO_TRY(sheets_take(marks, mesh));
+        ISO_TRY(link_again(&open, mesh, marks));
+    }
+    return ISO_OK;
+}
+
+/* marks: NULL, or room for them. */
+static iso_status mend_edges(iso_mesh *mesh, int64_t open, int64_t excess, sheets *marks) {
     if (excess > 0) {
         ISO_TRY(count_bad_edges(mesh));
         ISO_TRY(iso_mesh_drop_coincident(mesh));
         ISO_TRY(none_left(mesh));
-        ISO_TRY(link_again(&open, mesh));
+        ISO_TRY(link_again(&open, mesh, marks));
     } else {
         mesh->defects.bad_edges = open;
     }
     if (open > 0)
-        ISO_TRY(weld_seams(&open, mesh));
-    if (open > 0)
-        ISO_TRY(iso_mesh_close_holes(mesh, open));
-    return ISO_OK;
+        ISO_TRY(weld_seams(&open, mesh, marks));
+    if (marks)
+        return close_or_take(mesh, open, marks);
+    return open > 0 ? iso_mesh_close_holes(mesh, open, NULL) : ISO_OK;
 }
 
-iso_status iso_mesh_repair(iso_mesh *mesh, int64_t open, int64_t excess) {
+static iso_status mend_and_thicken(iso_mesh *mesh, int64_t open, int64_t excess, double thickness) {
+    sheets taken = {.thickness = thickness};
+    ISO_TRY(ISO_ALLOCATE(taken.mark, mesh->triangle_count));
+    memset(taken.mark, 0, (size_t)mesh->triangle_count);
+    iso_status status = mend_edges(mesh, open, excess, &taken);
+    if (status == ISO_OK)
+        status = sheets_thicken(mesh, &taken);
+    sheets_free(&taken);
+    return status;
+}
+
+iso_status iso_mesh_repair(iso_mesh *mesh, int64_t open, int64_t excess, double thickness) {
     const iso_mesh_defects *defects = &mesh->defects;
     ISO_TRY(none_left(mesh));
     if (open > 0 || excess > 0)
-        ISO_TRY(mend_edges(mesh, open, excess));
+        ISO_TRY(thickness > 0 ? mend_and_thicken(mesh, open, excess, thickness)
+                              : mend_edges(mesh, open, excess, NULL));
     ISO_TRY(iso_mesh_turn_shells(mesh));
     ISO_TRY(none_left(mesh));
-    if (defects->degenerate || defects->duplicate || defects->cancelled || defects->welded_vertices)
+    if (defects->degenerate || defects->duplicate || defects->cancelled ||
+        defects->welded_vertices || defects->sheets)
         ISO_TRY(drop_unused_vertices(mesh));
     find_box(mesh);
     return ISO_OK;

@@ -5,6 +5,7 @@
  *     orient.c      triangles are turned to agree with their neighbours
  *     seams.c       vertices on open edges weld within 10 um
  *     holes.c       boundary loops are closed by fans
+ *     sheet.c       what none of this closes is given a thickness, if there is to be one
  *     shells.c      shells inside out are turned
  *
  * A welded mesh whose edges all have exactly two opposite darts needs the last of them only. On
@@ -16,6 +17,8 @@
 
 #include <stdbool.h>
 
+#include "mesh/sheet.h"
+
 /* mm. Corners this close along open edges were meant to be one. */
 #define ISO_MESH_SEAM 0.01
 /* Share of a shell's area that may be invented to close it. A cube less one triangle needs 1/11, a
@@ -23,8 +26,9 @@
 #define ISO_MESH_CAP_SHARE 0.1
 
 /* The state that iso_mesh_builder leaves: `open` edges with one dart (opposite -1), and `excess`
- * darts beyond the first opposite pair of their edge (-1 too). */
-iso_status iso_mesh_repair(iso_mesh *mesh, int64_t open, int64_t excess) ISO_MUST_CHECK;
+ * darts beyond the first opposite pair of their edge (-1 too). thickness 0: sheets are refused. */
+iso_status iso_mesh_repair(iso_mesh *mesh, int64_t open, int64_t excess,
+                           double thickness) ISO_MUST_CHECK;
 
 /* Drop triangles that occur again and pairs of opposite ones. Leaves opposite[] undefined. */
 iso_status iso_mesh_drop_coincident(iso_mesh *mesh) ISO_MUST_CHECK;
@@ -47,10 +51,10 @@ iso_status iso_mesh_edges_pair(int64_t *open, iso_mesh *mesh,
                                const iso_mesh_edges *edges) ISO_MUST_CHECK;
 
 /* Turn triangles until neighbours agree; the edges stay valid as sets of vertices, but not their
- * darts: build them anew if *turned. ISO_UNSLICEABLE where this is impossible. Overwrites
- * opposite[]. */
-iso_status iso_mesh_orient(int64_t *turned, iso_mesh *mesh,
-                           const iso_mesh_edges *edges) ISO_MUST_CHECK;
+ * darts: build them anew if *turned. Where this is impossible: ISO_UNSLICEABLE, or the patch is
+ * marked in `marks`, unless that is NULL, and stays as it is. Overwrites opposite[]. */
+iso_status iso_mesh_orient(int64_t *turned, iso_mesh *mesh, const iso_mesh_edges *edges,
+                           sheets *marks) ISO_MUST_CHECK;
 
 /* Merge vertices on open edges that are at most ISO_MESH_SEAM apart: origin[] is renamed, triangles
  * that lose a side stay. *merged vertices found their place. */
@@ -59,8 +63,9 @@ iso_status iso_mesh_weld_seams(int64_t *merged, iso_mesh *mesh) ISO_MUST_CHECK;
 /* Drop triangles with two equal corners and count them. Leaves opposite[] undefined. */
 void iso_mesh_drop_degenerate(iso_mesh *mesh);
 
-/* Close what is open, or refuse. */
-iso_status iso_mesh_close_holes(iso_mesh *mesh, int64_t open) ISO_MUST_CHECK;
+/* Close what is open, or refuse; or, if `marks` isn't NULL, mark what is refused and close nothing,
+ * which leaves opposite[] undefined. */
+iso_status iso_mesh_close_holes(iso_mesh *mesh, int64_t open, sheets *marks) ISO_MUST_CHECK;
 
 /* Number the shells, in the order of their first triangles: shell[t] for every triangle. Open edges
  * are allowed. */

@@ -140,7 +140,7 @@ static iso_status read_binary(iso_mesh_builder *builder, iso_stl_source *s) {
     return read_records(builder, s, count);
 }
 
-static iso_status read_source(iso_mesh *mesh, iso_stl_source *s) {
+static iso_status read_source(iso_mesh *mesh, iso_stl_source *s, const iso_mesh_options *options) {
     iso_mesh_builder builder = {0};
     iso_status status = ISO_OK;
     if (s->end == 0)
@@ -158,19 +158,23 @@ static iso_status read_source(iso_mesh *mesh, iso_stl_source *s) {
     }
     iso_release(s->buffer); /* the peak of memory is still to come */
     s->buffer = NULL;
-    status = iso_mesh_builder_finish(mesh, &builder);
+    status = iso_mesh_builder_finish(mesh, &builder, options);
     if (status == ISO_UNSLICEABLE || status == ISO_UNREADABLE)
         return iso_fail(status, "%s: %s", s->path, iso_error_message());
     return status;
 }
 
 iso_status iso_mesh_read(iso_mesh *mesh, const char *path) {
+    return iso_mesh_read_with(mesh, path, NULL);
+}
+
+iso_status iso_mesh_read_with(iso_mesh *mesh, const char *path, const iso_mesh_options *options) {
     *mesh = (iso_mesh){0};
     iso_stl_source source;
     ISO_TRY(open_source(&source, path));
     iso_status status = iso_stl_source_fill(&source);
     if (status == ISO_OK)
-        status = read_source(mesh, &source);
+        status = read_source(mesh, &source, options);
     close_source(&source);
     return status;
 }
@@ -182,7 +186,7 @@ iso_status iso_mesh_read_memory(iso_mesh *mesh, const void *bytes, int64_t size)
     ISO_TRY(ISO_ALLOCATE(source.buffer, size));
     if (size > 0) /* bytes may be NULL then */
         memcpy(source.buffer, bytes, (size_t)size);
-    iso_status status = read_source(mesh, &source);
+    iso_status status = read_source(mesh, &source, NULL);
     close_source(&source);
     return status;
 }
