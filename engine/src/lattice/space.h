@@ -1,0 +1,27 @@
+/* The part's frame, and what is known of any place in it. */
+#ifndef ISO_LATTICE_SPACE_H
+#define ISO_LATTICE_SPACE_H
+
+#include <isoslice/lattice.h>
+#include <isoslice/mesh.h>
+
+#include "lattice/grading.h"
+
+typedef struct iso_space {
+    iso_vec3 origin;           /* of the frame, in the meshes' coordinates */
+    iso_vec3 min, max;         /* of the part, in the frame */
+    double least_r, largest_r; /* mm from the z axis, over the part's surface */
+} iso_space;
+
+iso_status space_make(iso_space *space, const iso_mesh *mesh, int32_t count) ISO_MUST_CHECK;
+
+/* Up to GRADING_BLOCK places in the frame, and what was asked for of each. */
+typedef struct iso_places {
+    double value[GRADING_VARIABLES][GRADING_BLOCK];
+    const double *variable[GRADING_VARIABLES];
+} iso_places;
+
+/* With x, y and z known, the others as far as `wanted` has their bits. */
+void space_know(iso_places *places, const iso_space *space, uint32_t wanted, int32_t count);
+
+#endif
