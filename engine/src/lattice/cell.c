@@ -14,6 +14,11 @@ typedef struct family {
 
 static const family families[] = {
     {tpms_fill, ISO_LATTICE_GYROID_SHEET, ISO_LATTICE_FISCHER_KOCH_SOLID, 64, 1},
+    {strut_fill, ISO_LATTICE_BCC_STRUTS, ISO_LATTICE_DIAMOND_STRUTS, 64, 1},
+    {foam_fill, ISO_LATTICE_FOAM_STRUTS, ISO_LATTICE_FOAM_SHEET, 128, 4},
+    {bone_fill, ISO_LATTICE_BONE_SHEET, ISO_LATTICE_BONE_SOLID, 128, 4},
+    {voxel_cubic_fill, ISO_LATTICE_VOXEL_CUBIC, ISO_LATTICE_VOXEL_CUBIC, 64, 1},
+    {voxel_random_fill, ISO_LATTICE_VOXEL_RANDOM, ISO_LATTICE_VOXEL_RANDOM, 128, 4},
 };
 
 static const family *family_of(int32_t pattern) {
