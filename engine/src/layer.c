@@ -75,6 +75,9 @@ static iso_status make_region(iso_layer *layer, iso_hand *hand, const iso_slices
     if (compensates(&layer->settings.compensation))
         ISO_TRY(compensate(&layer->region, (iso_region *[2]){&hand->island, &hand->inside},
                            &layer->settings.compensation, hand->planar));
+    if (layer->settings.drains.count > 0)
+        ISO_TRY(drains_cut(&layer->region, (iso_region *[2]){&hand->island, &hand->inside},
+                           &layer->settings.drains, hand->planar));
     ISO_TRY(check(&layer->region, hand));
     return iso_region_simplify(&layer->run[0], &layer->region, layer->settings.coarse,
                                hand->planar);

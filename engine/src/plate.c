@@ -22,10 +22,11 @@ bool plate_on_bed(const iso_points *bed, double x, double y) {
     return inside;
 }
 
-static iso_status read_models(iso_mesh *mesh, iso_report *report, const char *const *input,
-                              int32_t count) {
+static iso_status read_models(iso_mesh *mesh, iso_report *report, const iso_options *options,
+                              const char *const *input, int32_t count) {
+    iso_mesh_options reading = settings_of_reading(options);
     for (int32_t i = 0; i < count; i++) {
-        ISO_TRY(iso_mesh_read(&mesh[i], input[i]));
+        ISO_TRY(iso_mesh_read_with(&mesh[i], input[i], &reading));
         ISO_TRY(iso_report_add_input(report, input[i], &mesh[i]));
     }
     return ISO_OK;
@@ -68,7 +69,7 @@ static iso_status make_objects(iso_plate *plate, iso_report *report, const iso_o
     if (status == ISO_OK) {
         for (int32_t i = 0; i < count; i++)
             name[i] = name_of(input[i]);
-        status = read_models(mesh, report, input, count);
+        status = read_models(mesh, report, options, input, count);
         if (status == ISO_OK)
             status = modifiers_load(mesh + count, &plate->modifiers, report);
         if (status == ISO_OK && modifiers > 0)

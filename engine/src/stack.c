@@ -134,6 +134,8 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
     iso_layer *layer = window_layer(&stack->window, index);
     settings_of_layer(&layer->settings, stack->options, index, stack->levels.height[index]);
     layer->settings.sparse.z = iso_units(stack->levels.cut[index]);
+    if (stack->levels.top[index] - stack->levels.height[index] >= stack->options->lattice_skin)
+        layer->settings.drains.count = 0;
     if (stack->combination) {
         const iso_combination *of = &stack->combination[index];
         int32_t turn = of->last / (of->last - of->first + 1);

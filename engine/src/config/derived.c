@@ -172,6 +172,9 @@ iso_status iso_options_check(const iso_options *options) {
     if (options->adaptive_layers)
         ISO_TRY(check_layer(options, "max_layer_height", settings_of_adaptive(options).max, false));
     ISO_TRY(check_vase(options));
+    if (options->lattice_drain.count % 2 != 0)
+        return iso_fail(ISO_BAD_CONFIG, "lattice_drain: %d numbers are no pairs of X,Y",
+                        options->lattice_drain.count);
     if (double_area(&options->bed_shape) == 0)
         return iso_fail(ISO_BAD_CONFIG, "bed_shape: the points lie on a line; give its corners one "
                                         "after the other around it");

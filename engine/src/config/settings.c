@@ -55,6 +55,9 @@ static void set_outline(iso_layer_settings *s, const iso_options *options, bool 
                            .holes = iso_units(options->xy_hole_compensation),
                            .foot = first ? iso_units(options->elefant_foot_compensation) : 0,
                            .narrowest = s->wall.external.width};
+    s->drains = (iso_drains){.count = options->lattice_drain.count / 2,
+                             .at = options->lattice_drain.value,
+                             .radius = options->lattice_drain_diameter / 2};
     s->fuzzy = (iso_fuzzy_options){.on = options->fuzzy_skin != ISO_FUZZY_NONE && !first,
                                    .holes = options->fuzzy_skin == ISO_FUZZY_ALL,
                                    .thickness = iso_units(options->fuzzy_skin_thickness),

@@ -8,6 +8,7 @@
 #include <isoslice/wall.h>
 
 #include "config/texts.h"
+#include "lattice/drain.h"
 
 #include "path/order.h"
 #include "wall/compensation.h"
@@ -17,6 +18,7 @@
 typedef struct iso_layer_settings {
     int32_t thinning; /* units by which outlines may be thinned */
     iso_compensation compensation;
+    iso_drains drains; /* of the layers in the skin; the options must outlive them */
     iso_wall_options wall;
     iso_fuzzy_options fuzzy;
     iso_gap_options gap; /* of what the fill leaves open; least 0: stays open */

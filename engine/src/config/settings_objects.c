@@ -27,6 +27,13 @@ iso_object_options settings_of_objects(const iso_options *options) {
     return made;
 }
 
+iso_mesh_options settings_of_reading(const iso_options *options) {
+    double scale = iso_relative_of(options->scale, 1) * (options->inches ? 25.4 : 1);
+    return (iso_mesh_options){.volume = options->repair == ISO_REPAIR_VOLUME,
+                              .voxel = options->repair_voxel / scale,
+                              .sheet_thickness = options->sheet_thickness / scale};
+}
+
 /* What is drawn around all objects on the first layer must be on the bed too. */
 static double margin_of(const iso_options *options) {
     double height = iso_options_first_height(options);

@@ -10,6 +10,10 @@
  * by one. A grid takes them all as one. */
 iso_object_options settings_of_objects(const iso_options *options);
 
+/* Lengths in the file's own measure: what is scaled afterwards ends up as the user said, but for
+ * scale_to_fit. */
+iso_mesh_options settings_of_reading(const iso_options *options);
+
 /* mm by which outlines may be printed larger than the model's, on all sides. */
 double settings_of_growth(const iso_options *options);
 
