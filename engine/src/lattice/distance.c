@@ -6,7 +6,7 @@
 #include "base/memory.h"
 
 /* Samples are taken in blocks of 4 x 4 x 4; seeds are sorted by the block that they lie in. */
-enum { BLOCK = 4, ROWS = BLOCK * BLOCK, SAMPLES = BLOCK * ROWS };
+enum { BLOCK = 4 };
 
 /* From the middle of a block to its outermost samples, a little rounded up. */
 #define BLOCK_REACH 2.5981
@@ -199,7 +199,9 @@ static iso_status make_seeds(work *w) {
 typedef struct hunt {
     int32_t block[3];
     int32_t count;
-    float nearest; /* square from the middle */
+    int32_t best;  /* candidate nearest to the middle */
+    float nearest; /* square of its way from there */
+    float most;    /* square; what is further is no candidate */
 } hunt;
 
 static void take_block(work *w, hunt *h, int32_t x, int32_t y, int32_t z) {
@@ -218,15 +220,19 @@ static void take_block(work *w, hunt *h, int32_t x, int32_t y, int32_t z) {
         const float *p = w->seeds[s].at;
         float px = p[0] + shift[0], py = p[1] + shift[1], pz = p[2] + shift[2];
         float dx = px - middle, dy = py - middle, dz = pz - middle;
+        float apart = dx * dx + dy * dy + dz * dz;
+        if (apart > h->most)
+            continue;
         int32_t c = h->count++;
-        for (int i = 0; i < BLOCK; i++)
-            w->square[c][i] = (px - (float)i) * (px - (float)i);
         w->x[c] = px;
         w->y[c] = py;
         w->z[c] = pz;
         w->which[c] = s;
-        w->apart[c] = dx * dx + dy * dy + dz * dz;
-        h->nearest = w->apart[c] < h->nearest ? w->apart[c] : h->nearest;
+        w->apart[c] = apart;
+        if (apart < h->nearest) {
+            float reach = sqrtf(apart) + 2 * (float)BLOCK_REACH;
+            h->nearest = apart, h->best = c, h->most = reach * reach;
+        }
     }
 }
 
@@ -239,44 +245,64 @@ static void take_ring(work *w, hunt *h, int32_t ring) {
         }
 }
 
-/* Every seed that may be the nearest of any of the block's samples. Rings of blocks are taken until
- * those outside are too far; fewer than half the box, so that no block comes twice. */
-static void find_candidates(work *w, hunt *h) {
-    h->count = 0;
-    h->nearest = HUGE_VALF;
-    for (int32_t ring = 0; 2 * ring < w->blocks; ring++) {
-        take_ring(w, h, ring);
-        float known = (float)(BLOCK * ring) + 0.5f * BLOCK;
-        if (sqrtf(h->nearest) + 2 * (float)BLOCK_REACH <= known)
-            break;
-    }
-    float most = sqrtf(h->nearest) + 2 * (float)BLOCK_REACH;
+/* The bisector of a candidate and the one that is nearest to the block's middle must meet the
+ * block, or else the candidate is nobody's nearest. */
+static void keep_candidates(work *w, hunt *h) {
+    float x = w->x[h->best], y = w->y[h->best], z = w->z[h->best];
     int32_t kept = 0;
-    most *= most;
     for (int32_t c = 0; c < h->count; c++) {
-        w->square[kept] = w->square[c];
+        float way = fabsf(w->x[c] - x) + fabsf(w->y[c] - y) + fabsf(w->z[c] - z);
+        if (w->apart[c] - h->nearest > (BLOCK - 1) * way + 1e-3f)
+            continue;
+        for (int i = 0; i < BLOCK; i++)
+            w->square[kept][i] = (w->x[c] - (float)i) * (w->x[c] - (float)i);
         w->x[kept] = w->x[c];
         w->y[kept] = w->y[c];
         w->z[kept] = w->z[c];
-        w->which[kept] = w->which[c];
-        kept += w->apart[c] <= most;
+        w->which[kept++] = w->which[c];
     }
     h->count = kept;
 }
 
-static void nearest_of_row(four *square, four_indexes *which, const work *w, int32_t count, int y,
-                           int z) {
-    four best = {HUGE_VALF, HUGE_VALF, HUGE_VALF, HUGE_VALF};
-    four_indexes found = {0, 0, 0, 0};
-    for (int32_t c = 0; c < count; c++) {
-        float dy = w->y[c] - (float)y, dz = w->z[c] - (float)z, rest = dy * dy + dz * dz;
-        four d = w->square[c] + rest;
-        four_indexes less = d < best;
-        best = (four)(((four_indexes)d & less) | ((four_indexes)best & ~less));
-        found = (less & c) | (found & ~less);
+/* Every seed that may be the nearest of any of the block's samples. Rings of blocks are taken until
+ * those outside are too far; fewer than half the box, so that no block comes twice. */
+static void find_candidates(work *w, hunt *h) {
+    h->count = 0;
+    h->nearest = h->most = HUGE_VALF;
+    for (int32_t ring = 0; 2 * ring < w->blocks; ring++) {
+        take_ring(w, h, ring);
+        float known = (float)(BLOCK * ring) + 0.5f * BLOCK;
+        if (h->most <= known * known)
+            break;
     }
-    *square = best;
-    *which = found;
+    keep_candidates(w, h);
+}
+
+/* Keep candidate c where it is nearer than what was. */
+static inline void keep_nearer(four *best, four_indexes *found, four d, int32_t c) {
+    four_indexes less = d < *best;
+    *best = (four)(((four_indexes)d & less) | ((four_indexes)*best & ~less));
+    *found = (less & c) | (*found & ~less);
+}
+
+/* The nearest candidate of each of the 16 samples of a plane of the block. Four rows at once: the
+ * processor has four chains of comparisons to work on instead of one to wait for. */
+static void nearest_of_plane(four square[BLOCK], four_indexes found[BLOCK], const work *w,
+                             int32_t count, int z) {
+    const four far = {HUGE_VALF, HUGE_VALF, HUGE_VALF, HUGE_VALF};
+    const four_indexes none = {0, 0, 0, 0};
+    four b0 = far, b1 = far, b2 = far, b3 = far;
+    four_indexes f0 = none, f1 = none, f2 = none, f3 = none;
+    for (int32_t c = 0; c < count; c++) {
+        float y = w->y[c], dz = w->z[c] - (float)z, rest = dz * dz;
+        four x = w->square[c];
+        keep_nearer(&b0, &f0, x + (y * y + rest), c);
+        keep_nearer(&b1, &f1, x + ((y - 1) * (y - 1) + rest), c);
+        keep_nearer(&b2, &f2, x + ((y - 2) * (y - 2) + rest), c);
+        keep_nearer(&b3, &f3, x + ((y - 3) * (y - 3) + rest), c);
+    }
+    square[0] = b0, square[1] = b1, square[2] = b2, square[3] = b3;
+    found[0] = f0, found[1] = f1, found[2] = f2, found[3] = f3;
 }
 
 /* Distance from a surface that is known to the second order at a seed nearby: with s over its
@@ -303,18 +329,18 @@ static float refine(const seed *s, const float *to, float square) {
 
 static void fill_block(work *w, hunt *h) {
     find_candidates(w, h);
-    for (int row = 0; row < ROWS; row++) {
-        four square;
-        four_indexes which;
-        int y = row % BLOCK, z = row / BLOCK;
-        nearest_of_row(&square, &which, w, h->count, y, z);
-        float *f =
-            w->field + at(w, BLOCK * h->block[0], BLOCK * h->block[1] + y, BLOCK * h->block[2] + z);
-        for (int i = 0; i < BLOCK; i++) {
-            int32_t c = which[i];
-            const seed *s = &w->seeds[w->which[c]];
-            float to[3] = {(float)i - w->x[c], (float)y - w->y[c], (float)z - w->z[c]};
-            f[i] = copysignf(refine(s, to, square[i]), f[i]);
+    for (int z = 0; z < BLOCK; z++) {
+        four square[BLOCK];
+        four_indexes found[BLOCK];
+        nearest_of_plane(square, found, w, h->count, z);
+        for (int y = 0; y < BLOCK; y++) {
+            float *f = w->field +
+                       at(w, BLOCK * h->block[0], BLOCK * h->block[1] + y, BLOCK * h->block[2] + z);
+            for (int i = 0; i < BLOCK; i++) {
+                int32_t c = found[y][i];
+                float to[3] = {(float)i - w->x[c], (float)y - w->y[c], (float)z - w->z[c]};
+                f[i] = copysignf(refine(&w->seeds[w->which[c]], to, square[y][i]), f[i]);
+            }
         }
     }
 }
