@@ -220,7 +220,7 @@ static iso_point crossing_at(const iso_clip *clip, iso_point b, int32_t i) {
 static void note(iso_clip *clip, iso_point at, int32_t edge) {
     if (clip->block->count == ISO_CLIP_BLOCK && (clip->status = add_block(clip)) != ISO_OK)
         return;
-    clip->block->event[clip->block->count++] = (iso_clip_event){at, edge};
+    clip->block->event[clip->block->count++] = (iso_clip_event){at, edge, clip->bead};
 }
 
 static int is_beyond(const iso_clip *clip, iso_point a, iso_point b) {
@@ -249,23 +249,39 @@ static void finish_curve(iso_clip *clip) {
     clip->started = clip->inside = 0;
 }
 
-void iso_clip_move(iso_clip *clip, double x, double y) {
-    iso_point to = place(clip, x, y);
-    if (clip->status != ISO_OK)
-        return;
-    finish_curve(clip);
-    if (!is_beyond(clip, to, to)) { /* step in from the left to see where we are */
-        clip->at = (iso_point){clip->box.min.x - 2, to.y};
-        clip->inside = find_crossed(clip, to, 0) & 1;
-        if (clip->inside)
-            note(clip, to, -2);
-    }
+int iso_clip_holds(iso_clip *clip, iso_point at) {
+    iso_point was = clip->at;
+    if (is_beyond(clip, at, at))
+        return 0;
+    clip->at = (iso_point){clip->box.min.x - 2, at.y}; /* step in from the left */
+    int inside = find_crossed(clip, at, 0) & 1;
+    clip->at = was;
+    return inside;
+}
+
+static void start_at(iso_clip *clip, iso_point to, int inside) {
+    clip->inside = inside;
+    if (inside)
+        note(clip, to, -2);
     clip->at = to;
     clip->started = 1;
 }
 
-void iso_clip_draw(iso_clip *clip, double x, double y) {
-    iso_point to = place(clip, x, y);
+void iso_clip_move_to(iso_clip *clip, iso_point to) {
+    if (clip->status != ISO_OK)
+        return;
+    finish_curve(clip);
+    start_at(clip, to, iso_clip_holds(clip, to));
+}
+
+void iso_clip_move_within(iso_clip *clip, iso_point to) {
+    if (clip->status != ISO_OK)
+        return;
+    finish_curve(clip);
+    start_at(clip, to, 1);
+}
+
+void iso_clip_draw_to(iso_clip *clip, iso_point to) {
     if (clip->status != ISO_OK || point_equal(to, clip->at))
         return;
     int32_t count = is_beyond(clip, clip->at, to) ? 0 : find_crossed(clip, to, clip->inside);
@@ -279,6 +295,21 @@ void iso_clip_draw(iso_clip *clip, double x, double y) {
     if (clip->inside && clip->status == ISO_OK)
         note(clip, to, ISO_CLIP_INNER);
     clip->at = to;
+}
+
+void iso_clip_draw_within(iso_clip *clip, iso_point to) {
+    if (clip->status != ISO_OK || point_equal(to, clip->at))
+        return;
+    note(clip, to, ISO_CLIP_INNER);
+    clip->at = to;
+}
+
+void iso_clip_move(iso_clip *clip, double x, double y) {
+    iso_clip_move_to(clip, place(clip, x, y));
+}
+
+void iso_clip_draw(iso_clip *clip, double x, double y) {
+    iso_clip_draw_to(clip, place(clip, x, y));
 }
 
 iso_status iso_clip_end(iso_weave *weave, iso_clip *clip) {
@@ -296,10 +327,14 @@ iso_status iso_clip_end(iso_weave *weave, iso_clip *clip) {
     ISO_TRY(ISO_PUSH(weave->crossing, clip->scratch, crossings));
     ISO_TRY(ISO_PUSH(weave->inner, clip->scratch, inner));
     ISO_TRY(ISO_PUSH(weave->inner_first, clip->scratch, crossings / 2 + 1));
+    if (clip->has_beads)
+        ISO_TRY(ISO_PUSH(weave->bead, clip->scratch, crossings + inner));
     int32_t c = 0, i = 0;
     for (const iso_clip_block *block = clip->head; block; block = block->next)
         for (int32_t k = 0; k < block->count; k++) {
             const iso_clip_event *event = &block->event[k];
+            if (weave->bead)
+                weave->bead[event->edge == ISO_CLIP_INNER ? weave->count + i : c] = event->bead;
             if (event->edge == ISO_CLIP_INNER) {
                 weave->inner[i++] = event->at;
                 continue;

@@ -23,6 +23,7 @@ typedef struct iso_clip_edge { /* an edge that the present step crosses */
 typedef struct iso_clip_event { /* inner points and crossings, in the order of the curves */
     iso_point at;
     int32_t edge; /* as in iso_crossing; ISO_CLIP_INNER: a point of the curve */
+    iso_weave_bead bead;
 } iso_clip_event;
 
 enum { ISO_CLIP_INNER = INT32_MIN, ISO_CLIP_BLOCK = 1000 };
@@ -47,6 +48,8 @@ typedef struct iso_clip {
     iso_clip_edge *crossed; /* [edges] room */
     iso_point at;           /* where the curve has got to */
     int started, inside;
+    int has_beads;       /* do the curves' beads differ? */
+    iso_weave_bead bead; /* then that of what is drawn from now on */
     iso_clip_block *block, *head;
     iso_status status; /* the first failure; then nothing more is drawn */
 } iso_clip;
@@ -63,6 +66,16 @@ void iso_clip_extent(double min[2], double max[2], const iso_clip *clip);
  */
 void iso_clip_move(iso_clip *clip, double x, double y);
 void iso_clip_draw(iso_clip *clip, double x, double y);
+
+/* The same in units, rounded already, whatever the frame. */
+void iso_clip_move_to(iso_clip *clip, iso_point to);
+void iso_clip_draw_to(iso_clip *clip, iso_point to);
+/* What the caller knows to lie within the region altogether. */
+void iso_clip_move_within(iso_clip *clip, iso_point to);
+void iso_clip_draw_within(iso_clip *clip, iso_point to);
+
+/* Is a point in the region, moved as curves are? */
+int iso_clip_holds(iso_clip *clip, iso_point at);
 
 /* All pieces, linked. Pushed to `scratch`. */
 iso_status iso_clip_end(iso_weave *weave, iso_clip *clip) ISO_MUST_CHECK;

@@ -125,13 +125,24 @@ typedef struct weaver {
     uint8_t *drawn;   /* of each chain */
     double *anchored; /* of each dart: how much of its arc is drawn from there, alone */
     iso_point *point;
+    iso_weave_bead *bead; /* of the piece from each point to the next, if they differ */
     int32_t count;
 } weaver;
 
-static void draw_to(weaver *run, iso_point to) {
+/* A bead of the weave's; the options' for links and anchors. */
+static void draw_bead(weaver *run, iso_point to, int32_t bead) {
     iso_point last = run->count ? run->point[run->count - 1] : (iso_point){0};
-    if (!run->count || last.x != to.x || last.y != to.y)
-        run->point[run->count++] = to;
+    if (run->count && last.x == to.x && last.y == to.y)
+        return;
+    if (run->bead && run->count)
+        run->bead[run->count - 1] = bead < 0
+                                        ? (iso_weave_bead){run->options->width, run->options->area}
+                                        : run->weave->bead[bead];
+    run->point[run->count++] = to;
+}
+
+static void draw_to(weaver *run, iso_point to) {
+    draw_bead(run, to, -1);
 }
 
 static iso_point place(const weaver *run, int32_t dart) {
@@ -284,12 +295,18 @@ static int32_t draw_chain(weaver *run, int32_t c) {
     const iso_weave *weave = run->weave;
     run->drawn[c >> 1] = 1;
     draw_to(run, weave->crossing[c].at);
+    int32_t last = c | 1; /* beads are those of the pieces before, seen along the chain */
     if (weave->inner_first) {
         int32_t from = weave->inner_first[c >> 1], to = weave->inner_first[(c >> 1) + 1];
-        for (int32_t i = from; i < to; i++)
-            draw_to(run, weave->inner[c & 1 ? to - 1 - (i - from) : i]);
+        for (int32_t i = from; i < to; i++) {
+            int32_t k = c & 1 ? to - 1 - (i - from) : i,
+                    before = i == from ? last : weave->count + k + 1;
+            draw_bead(run, weave->inner[k], c & 1 ? before : weave->count + k);
+        }
+        if (from < to && c & 1)
+            last = weave->count + from;
     }
-    draw_to(run, weave->crossing[c ^ 1].at);
+    draw_bead(run, weave->crossing[c ^ 1].at, last);
     return c ^ 1;
 }
 
@@ -309,6 +326,12 @@ static void turn_round(weaver *run) {
         run->point[i] = run->point[j];
         run->point[j] = swap;
     }
+    if (run->bead)
+        for (int32_t i = 0, j = run->count - 2; i < j; i++, j--) {
+            iso_weave_bead swap = run->bead[i];
+            run->bead[i] = run->bead[j];
+            run->bead[j] = swap;
+        }
 }
 
 static int is_short(const weaver *run) {
@@ -316,6 +339,16 @@ static int is_short(const weaver *run) {
     for (int32_t i = 1; i < run->count && length <= run->options->shortest; i++)
         length += iso_hatch_distance(run->point[i - 1], run->point[i]);
     return run->count < 2 || length <= run->options->shortest;
+}
+
+/* Of the path added last. The last point's are nobody's. */
+static void set_beads(iso_paths *out, const weaver *run) {
+    iso_path_vertex *vertex = out->vertex + out->path[out->count - 1].first;
+    for (int32_t i = 0; i < run->count; i++) {
+        iso_weave_bead bead = run->bead[i + 1 < run->count ? i : i - 1];
+        vertex[i].width = bead.width;
+        vertex[i].area = bead.area;
+    }
 }
 
 static iso_status draw_all(iso_paths *out, weaver *run) {
@@ -335,9 +368,12 @@ static iso_status draw_all(iso_paths *out, weaver *run) {
         turn_round(run); /* and on from the other end, if it leads anywhere */
         draw_on(run, start);
         at = run->point[run->count - 1];
-        if (!is_short(run))
-            ISO_TRY(iso_paths_add(out, &like, run->point, run->count, run->options->width,
-                                  run->options->area));
+        if (is_short(run))
+            continue;
+        ISO_TRY(iso_paths_add(out, &like, run->point, run->count, run->options->width,
+                              run->options->area));
+        if (run->bead)
+            set_beads(out, run);
     }
     return ISO_OK;
 }
@@ -352,6 +388,8 @@ iso_status iso_weave_draw(iso_paths *out, const iso_weave *weave, const iso_fill
         points += weave->inner_first[chains];
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     ISO_TRY(ISO_PUSH(run.point, scratch, points));
+    if (weave->bead)
+        ISO_TRY(ISO_PUSH(run.bead, scratch, points));
     ISO_TRY(ISO_PUSH(run.drawn, scratch, chains));
     ISO_TRY(ISO_PUSH(run.anchored, scratch, 2 * (int64_t)weave->count));
     memset(run.drawn, 0, (size_t)chains);

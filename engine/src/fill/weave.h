@@ -13,6 +13,10 @@
 #include "base/memory.h"
 #include "fill/crossing.h"
 
+typedef struct iso_weave_bead { /* of the piece of a chain that ends in a point */
+    int32_t width, area;
+} iso_weave_bead;
+
 typedef struct iso_weave {
     const iso_region *region;
     int32_t count;          /* crossings, even */
@@ -21,6 +25,8 @@ typedef struct iso_weave {
     int32_t *contour;       /* p [count]; region->count + c for a loose end */
     int32_t *inner_first;   /* [count / 2 + 1]; NULL: all chains are straight */
     iso_point *inner;       /* of chain k those from inner_first[k] on, in its direction */
+    iso_weave_bead *bead;   /* of pieces that end in crossings [count], then inner points; NULL: all
+                             * are as the options say */
 } iso_weave;
 
 /* Find B and p of crossings in any order. What the weave holds is pushed to `scratch`. */

@@ -1,0 +1,174 @@
+#include "lattice/slice.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "lattice/bulk.h"
+#include "lattice/contour.h"
+#include "lattice/samples.h"
+#include "lattice/sheet.h"
+
+/* units; contours of sections are thinned by so much, and squares so near a region's boundary count
+ * as on it. */
+enum { THINNING = 50, REACH = 200 };
+
+/* One side of the material: where `side` distance <= half; and only where half is above `thicker`
+ * mm. */
+typedef struct siding {
+    const samples *samples;
+    double side, thicker;
+    double *value; /* two rows in turn */
+} siding;
+
+/* Outside the region there is none, so every contour closes, in squares that are outside. */
+static void row(contour_row *out, void *context, int32_t j) {
+    const siding *s = context;
+    const raster *r = &s->samples->raster;
+    const float *distance = samples_distance(s->samples, j), *half = samples_half(s->samples, j);
+    double *value = s->value + (int64_t)(j & 1) * r->columns;
+    for (int32_t i = 0; i < r->columns; i++) {
+        double at = s->side * distance[i] - half[i];
+        double thin = s->thicker - half[i];
+        value[i] = !raster_meets(r, i, j) ? SAMPLES_FAR : thin > at ? thin : at;
+    }
+    *out = (contour_row){value, NULL};
+}
+
+/* The far side of a sheet, below which there's none: turned round, to be taken away. */
+static void far_row(contour_row *out, void *context, int32_t j) {
+    const siding *s = context;
+    const raster *r = &s->samples->raster;
+    const float *distance = samples_distance(s->samples, j), *half = samples_half(s->samples, j);
+    double *value = s->value + (int64_t)(j & 1) * r->columns;
+    for (int32_t i = 0; i < r->columns; i++) {
+        double at = (double)distance[i] + half[i], thin = s->thicker - half[i];
+        value[i] = !raster_meets(r, i, j) || half[i] < 0 ? SAMPLES_FAR : thin > at ? thin : at;
+    }
+    *out = (contour_row){value, NULL};
+}
+
+static iso_status add_curve(iso_region *raw, const contour *c, int32_t start, const raster *r,
+                            iso_point *point, bool turned) {
+    int32_t count = 0, i = start;
+    do {
+        const contour_crossing *at = contour_at(c, i);
+        iso_point p = {(int32_t)floor(r->x + at->x * r->step + 0.5),
+                       (int32_t)floor(r->y + at->y * r->step + 0.5)};
+        if (count == 0 || point[count - 1].x != p.x || point[count - 1].y != p.y)
+            point[count++] = p;
+        i = at->next;
+    } while (i != start && i >= 0);
+    while (count > 1 && point[count - 1].x == point[0].x && point[count - 1].y == point[0].y)
+        count--;
+    if (count < 3)
+        return ISO_OK;
+    for (int32_t a = 0, b = count - 1; turned && a < b; a++, b--) {
+        iso_point swap = point[a];
+        point[a] = point[b];
+        point[b] = swap;
+    }
+    return iso_region_add(raw, point, count);
+}
+
+static iso_status add_contours(iso_region *raw, siding *s, bool far, iso_arena *scratch) {
+    const raster *r = &s->samples->raster;
+    contour_grid grid = {
+        .columns = r->columns, .rows = r->rows, .row = far ? far_row : row, .context = s};
+    contour c;
+    iso_point *point;
+    int32_t count;
+    int closed;
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    ISO_TRY(ISO_PUSH(s->value, scratch, 2 * (int64_t)r->columns));
+    ISO_TRY(contour_trace(&c, &grid, scratch));
+    ISO_TRY(ISO_PUSH(point, scratch, c.count));
+    for (int32_t start; (start = contour_curve(&c, &count, &closed)) >= 0;)
+        ISO_TRY(add_curve(raw, &c, start, r, point, far));
+    iso_arena_pop(scratch, mark);
+    return ISO_OK;
+}
+
+/* The section where the material's half thickness is above `thicker` mm, within the area. */
+static iso_status section_of(iso_region *out, const iso_region *area, const samples *taken,
+                             double thicker, iso_arena *scratch, iso_planar_scratch *planar) {
+    siding s = {taken, 1, thicker, NULL};
+    iso_region raw = {0}, clean = {0};
+    iso_status status = add_contours(&raw, &s, false, scratch);
+    if (status == ISO_OK && taken->has_sides)
+        status = add_contours(&raw, &s, true, scratch);
+    if (status == ISO_OK)
+        status = iso_region_simplify(&clean, &raw, THINNING, planar);
+    if (status == ISO_OK)
+        status = iso_boolean(out, ISO_INTERSECTION, &clean, area, planar);
+    iso_region_free(&raw);
+    iso_region_free(&clean);
+    return status;
+}
+
+iso_status lattice_section(iso_region *out, const iso_region *area, const iso_lattice_slice *slice,
+                           iso_arena *scratch, iso_planar_scratch *planar) {
+    samples taken;
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    iso_region_clear(out);
+    if (area->count == 0)
+        return ISO_OK;
+    iso_status status = samples_take(&taken, area, slice, REACH, scratch);
+    if (status == ISO_OK)
+        status = section_of(out, area, &taken, -SAMPLES_FAR, scratch, planar);
+    iso_arena_pop(scratch, mark);
+    return status;
+}
+
+/* Everything that isn't drawn as lines. The beads' outlines may reach to the edge of what is to be
+ * filled, the margin further out than their middles. */
+static iso_status fill_bulk(iso_paths *out, const iso_region *region, const samples *taken,
+                            double thicker, const iso_fill_options *fill, iso_arena *scratch,
+                            iso_planar_scratch *planar) {
+    iso_region section = {0};
+    iso_status status = section_of(&section, region, taken, thicker, scratch, planar);
+    if (status == ISO_OK)
+        status = bulk_draw(out, &section, fill, scratch, planar);
+    iso_region_free(&section);
+    return status;
+}
+
+static iso_status fill_all(iso_paths *out, const iso_region *region, const iso_lattice_slice *slice,
+                           const iso_fill_options *fill, iso_arena *scratch,
+                           iso_planar_scratch *planar) {
+    samples taken;
+    sheet_bead bead = sheet_bead_of(fill);
+    iso_region area = {0};
+    double limit = lattice_cell(slice->lattice)->has_sides ? sheet_limit(&bead) : -SAMPLES_FAR;
+    if (limit > 0) {
+        ISO_TRY(samples_take(&taken, region, slice, bead.tolerance + REACH, scratch));
+        if (taken.thin <= limit)
+            ISO_TRY(sheet_draw(out, region, &taken, fill, scratch));
+        if (taken.thick <= limit)
+            return ISO_OK;
+    }
+    iso_offset_options grow = iso_offset_defaults(fill->margin);
+    iso_status status = iso_offset(&area, region, &grow, planar);
+    if (status == ISO_OK)
+        status = samples_take(&taken, &area, slice, REACH, scratch);
+    if (status == ISO_OK)
+        status = fill_bulk(out, &area, &taken, limit, fill, scratch, planar);
+    iso_region_free(&area);
+    return status;
+}
+
+iso_status lattice_fill(iso_paths *out, const iso_region *region, const iso_lattice_slice *slice,
+                        const iso_fill_options *fill, iso_arena *scratch,
+                        iso_planar_scratch *planar) {
+    int32_t count = out->count, vertex_count = out->vertex_count;
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    ISO_TRY(iso_fill_options_validate(fill));
+    if (region->count == 0)
+        return ISO_OK;
+    iso_status status = fill_all(out, region, slice, fill, scratch, planar);
+    iso_arena_pop(scratch, mark);
+    if (status != ISO_OK) {
+        out->count = count;
+        out->vertex_count = vertex_count;
+    }
+    return status;
+}
