@@ -28,6 +28,22 @@ typedef struct iso_report_stage {
     int64_t bytes;  /* of what it keeps in memory, at its largest; 0: nothing */
 } iso_report_stage;
 
+/* What rays said about the contours of slices and the shells that they come from (docs/models.md).
+ * Samples, unless all were asked for. */
+typedef struct iso_report_solid {
+    int64_t contours;         /* of the objects that were looked at */
+    int64_t contours_checked; /* of those */
+    int64_t contours_buried;  /* with material on both sides, as where shells overlap */
+    int64_t contours_empty;   /* with material on neither */
+    int64_t contours_wrong;   /* that aren't the model's section */
+    int64_t points;           /* asked about */
+    int64_t shells;
+    int64_t shells_overlapping; /* partly within the material of others, or of themselves */
+    int64_t shells_nested;      /* wholly: they bound nothing */
+    int64_t shells_hollow;      /* with material on neither side: they bound nothing */
+    int64_t cavities;
+} iso_report_solid;
+
 /* Codes are stable: scripts may look for them. docs/command-line.md lists them. */
 typedef struct iso_report_warning {
     const char *code; /* a constant: "mesh-mended" */
@@ -47,6 +63,7 @@ typedef struct iso_report {
     double printed_height; /* mm, top of the last layer */
     double mesh_volume;    /* mm^3 of the meshes clipped to the printed height */
     double sliced_volume;  /* mm^3, sum of each layer's area times its height */
+    iso_report_solid solid;
     iso_planar_counts kernel;
     iso_gcode_totals print;
     double seconds;          /* of the whole job, on the clock */

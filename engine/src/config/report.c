@@ -172,6 +172,25 @@ static void write_stages(iso_json *json, const iso_report *report) {
     iso_json_integer(json, "threads", report->threads);
 }
 
+/* Left out where nothing was to be looked at. */
+static void write_solid(iso_json *json, const iso_report_solid *solid) {
+    if (solid->points == 0)
+        return;
+    iso_json_begin(json, "solid", '{');
+    iso_json_integer(json, "contours", solid->contours);
+    iso_json_integer(json, "contours_checked", solid->contours_checked);
+    iso_json_integer(json, "contours_buried", solid->contours_buried);
+    iso_json_integer(json, "contours_empty", solid->contours_empty);
+    iso_json_integer(json, "contours_wrong", solid->contours_wrong);
+    iso_json_integer(json, "points", solid->points);
+    iso_json_integer(json, "shells", solid->shells);
+    iso_json_integer(json, "shells_overlapping", solid->shells_overlapping);
+    iso_json_integer(json, "shells_nested", solid->shells_nested);
+    iso_json_integer(json, "shells_hollow", solid->shells_hollow);
+    iso_json_integer(json, "cavities", solid->cavities);
+    iso_json_end(json, '}');
+}
+
 static void write_kernel(iso_json *json, const iso_planar_counts *kernel) {
     iso_json_begin(json, "kernel", '{');
     iso_json_integer(json, "operations", kernel->operations);
@@ -228,6 +247,7 @@ iso_status iso_report_write(const iso_report *report, const iso_options *options
     iso_json_end(&json, '}');
     write_layers(&json, report);
     write_stages(&json, report);
+    write_solid(&json, &report->solid);
     write_kernel(&json, &report->kernel);
     write_print(&json, &report->print);
     write_warnings(&json, report);
