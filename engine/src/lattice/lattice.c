@@ -5,12 +5,14 @@
 
 #include "base/memory.h"
 #include "lattice/grading.h"
+#include "lattice/map.h"
 #include "lattice/space.h"
 
 struct iso_lattice {
     iso_lattice_cell cell;
     iso_grading size, density; /* mm; percent */
     iso_space space;
+    iso_cell_map map;
     uint32_t wanted;   /* variables, as bits */
     double samples[3]; /* of the table, in a cell */
     double smallest;   /* mm, of a cell's edge */
@@ -31,6 +33,60 @@ static iso_status check_size(const iso_lattice *lattice, double size, iso_vec3 a
                     where, least_cell, most_cell);
 }
 
+enum { CHECKED = 33 }; /* places along each side of the part's box */
+
+/* One row along x of what is checked. */
+static iso_status check_row(iso_lattice *lattice, iso_places *places, int32_t j, int32_t k) {
+    const iso_space *space = &lattice->space;
+    double size[CHECKED], *x = places->value[GRADING_X], *skin = places->value[GRADING_SKIN];
+    iso_vec3 at = {0, space->min.y + (space->max.y - space->min.y) * j / (CHECKED - 1),
+                   space->max.z * k / (CHECKED - 1)};
+    for (int32_t i = 0; i < CHECKED; i++) {
+        x[i] = space->min.x + (space->max.x - space->min.x) * i / (CHECKED - 1);
+        places->value[GRADING_Y][i] = at.y;
+        places->value[GRADING_Z][i] = at.z;
+    }
+    space_know(places, space, lattice->wanted, CHECKED);
+    grading_evaluate(size, &lattice->size, places->variable, CHECKED);
+    for (int32_t i = 0; i < CHECKED; i++) {
+        if ((lattice->wanted >> GRADING_SKIN & 1) && skin[i] < 0)
+            continue; /* no part there */
+        at.x = x[i];
+        ISO_TRY(check_size(lattice, size[i], at));
+        lattice->smallest = fmin(lattice->smallest, size[i]);
+    }
+    return ISO_OK;
+}
+
+static iso_status check_sizes(iso_lattice *lattice) {
+    lattice->smallest = HUGE_VAL;
+    if (!lattice->size.expression) {
+        lattice->smallest = lattice->size.value;
+        return check_size(lattice, lattice->size.value, (iso_vec3){0});
+    }
+    iso_places *places;
+    ISO_TRY(ISO_ALLOCATE(places, 1));
+    iso_status status = ISO_OK;
+    for (int32_t k = 0; k < CHECKED && status == ISO_OK; k++)
+        for (int32_t j = 0; j < CHECKED && status == ISO_OK; j++)
+            status = check_row(lattice, places, j, k);
+    iso_release(places);
+    if (status == ISO_OK && lattice->smallest == HUGE_VAL) /* thinner than the grid of places */
+        lattice->smallest = least_cell;
+    return status;
+}
+
+/* Around an axis cells get narrower towards it: to half their size that is followed. */
+static double narrowest(const iso_lattice *lattice) {
+    double smallest = fmin(lattice->smallest, lattice->map.smallest);
+    if (map_is_even(&lattice->map))
+        return smallest;
+    double inner = lattice->map.kind == ISO_LATTICE_MAP_SPHERE
+                       ? 0
+                       : lattice->space.least_r / lattice->space.mean_r;
+    return smallest * fmin(1, fmax(inner, 0.5));
+}
+
 /* mm from the skeleton to the surface of the material; density in percent. */
 static double half_of(const iso_lattice *lattice, double density, double size) {
     if (!(density > 0))
@@ -40,17 +96,29 @@ static double half_of(const iso_lattice *lattice, double density, double size) {
     return cell_level(&lattice->cell, density / 100) * size;
 }
 
+static uint32_t find_wanted(const iso_lattice *lattice, int32_t kind) {
+    uint32_t wanted = map_wants(kind);
+    for (int32_t k = 0; k < GRADING_VARIABLES; k++)
+        if (grading_uses(&lattice->size, k) || grading_uses(&lattice->density, k))
+            wanted |= (uint32_t)1 << k;
+    return wanted;
+}
+
 static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
                        const iso_mesh *mesh, int32_t count) {
+    if (options->map < 0 || options->map >= ISO_LATTICE_MAP_COUNT)
+        return iso_fail(ISO_BAD_CONFIG, "there is no lattice_map %d", (int)options->map);
     ISO_TRY(grading_make(&lattice->size, options->cell, "lattice_cell"));
     ISO_TRY(grading_make(&lattice->density, options->density, "lattice_density"));
+    lattice->wanted = find_wanted(lattice, options->map);
     ISO_TRY(space_make(&lattice->space, mesh, count));
-    if (!lattice->size.expression)
-        ISO_TRY(check_size(lattice, lattice->size.value, (iso_vec3){0}));
+    ISO_TRY(check_sizes(lattice));
     ISO_TRY(cell_make(&lattice->cell, options));
+    ISO_TRY(map_make(&lattice->map, options->map, &lattice->space, &lattice->size,
+                     lattice->cell.repeat[0], least_cell));
+    lattice->smallest = narrowest(lattice);
     for (int k = 0; k < 3; k++)
         lattice->samples[k] = (double)lattice->cell.size[k] / lattice->cell.repeat[k];
-    lattice->smallest = lattice->size.value;
     lattice->half = half_of(lattice, lattice->density.value, lattice->size.value);
     return ISO_OK;
 }
@@ -74,6 +142,7 @@ void lattice_free(iso_lattice *lattice) {
         return;
     grading_free(&lattice->size);
     grading_free(&lattice->density);
+    map_free(&lattice->map);
     cell_free(&lattice->cell);
     iso_release(lattice);
 }
@@ -82,15 +151,20 @@ const iso_lattice_cell *lattice_cell(const iso_lattice *lattice) {
     return &lattice->cell;
 }
 
+/* Cells of one size, along x, y and z. */
+static bool is_straight(const iso_lattice *lattice) {
+    return !lattice->size.expression && lattice->map.kind == ISO_LATTICE_MAP_XYZ;
+}
+
 int lattice_is_uniform(const iso_lattice *lattice) {
-    return !lattice->size.expression && !lattice->density.expression;
+    return is_straight(lattice) && !lattice->density.expression;
 }
 
 double lattice_smallest_cell(const iso_lattice *lattice) {
     return lattice->smallest;
 }
 
-/* ---- sampling, uniform ---- */
+/* ---- rows of straight lattices ---- */
 
 enum { ROW = 1024 }; /* samples of the table that are blended for a row at once */
 
@@ -151,9 +225,10 @@ static void sample_blended(double *distance, const row_of_table *table, double f
     }
 }
 
-static void sample_row_uniform(double *distance, const iso_lattice *lattice,
-                               const iso_lattice_plane *plane, int32_t row, int32_t first,
-                               int32_t count) {
+/* Of a straight lattice. */
+static void sample_row_straight(double *distance, const iso_lattice *lattice,
+                                const iso_lattice_plane *plane, int32_t row, int32_t first,
+                                int32_t count) {
     const double *samples = lattice->samples;
     double size = lattice->size.value, scale = samples[0] / size;
     iso_vec3 origin = lattice->space.origin;
@@ -169,24 +244,132 @@ static void sample_row_uniform(double *distance, const iso_lattice *lattice,
     }
 }
 
-/* ---- sampling ---- */
+/* ---- any lattice, anywhere ---- */
+
+/* g in cells, and how it changes there, per cell. */
+static double distance_and_slope(double slope[3], const iso_lattice *lattice, const double at[3]) {
+    const iso_lattice_cell *cell = &lattice->cell;
+    iso_cell_place x = cell_place(at[0], cell->size[0]), y = cell_place(at[1], cell->size[1]),
+                   z = cell_place(at[2], cell->size[2]);
+    int64_t n0 = cell->size[0], n1 = cell->size[1];
+    const float *low = cell->distance + n0 * n1 * z.low, *high = cell->distance + n0 * n1 * z.high;
+    const float *row[4] = {low + n0 * y.low, low + n0 * y.high, high + n0 * y.low,
+                           high + n0 * y.high};
+    double value[4], along[4];
+    for (int i = 0; i < 4; i++) {
+        along[i] = row[i][x.high] - row[i][x.low];
+        value[i] = row[i][x.low] + x.part * along[i];
+    }
+    double near = value[0] + y.part * (value[1] - value[0]);
+    double far = value[2] + y.part * (value[3] - value[2]);
+    double near_along = along[0] + y.part * (along[1] - along[0]);
+    double far_along = along[2] + y.part * (along[3] - along[2]);
+    double near_across = value[1] - value[0], far_across = value[3] - value[2];
+    slope[0] = (near_along + z.part * (far_along - near_along)) * lattice->samples[0];
+    slope[1] = (near_across + z.part * (far_across - near_across)) * lattice->samples[1];
+    slope[2] = (far - near) * lattice->samples[2];
+    return near + z.part * (far - near);
+}
+
+/* mm in a cell, across the surface: its slope tells which way that is. */
+static double length_of_cell(const double slope[3], const double stretch[3], double size) {
+    double square = 0, stretched = 0;
+    for (int k = 0; k < 3; k++) {
+        double part = slope[k] / stretch[k];
+        square += slope[k] * slope[k];
+        stretched += part * part;
+    }
+    return square > 1e-6 && stretched > 0 ? sqrt(square / stretched) : size;
+}
+
+/* Is this within what the table can be asked? Else something was no number, or divided by 0. */
+static bool is_usable(const double at[3], double size) {
+    return fabs(at[0]) < 1e9 && fabs(at[1]) < 1e9 && fabs(at[2]) < 1e9 && size > 0 &&
+           size < HUGE_VAL;
+}
+
+/* distance: mm; unit: mm in a cell, or 0 where there is no lattice. */
+static void measure(double *distance, double *unit, const iso_lattice *lattice,
+                    const iso_places *places, int32_t count) {
+    iso_cell_places cells, stretch;
+    double size[GRADING_BLOCK];
+    bool even = map_is_even(&lattice->map);
+    grading_evaluate(size, &lattice->size, places->variable, count);
+    map_cells(cells, &lattice->map, places, size, count);
+    if (!even)
+        map_stretch(stretch, &lattice->map, places, size, count);
+    for (int32_t i = 0; i < count; i++) {
+        double at[3], slope[3], g;
+        for (int k = 0; k < 3; k++)
+            at[k] = cells[k][i] * lattice->samples[k];
+        distance[i] = unit[i] = 0;
+        if (!is_usable(at, size[i]))
+            continue;
+        unit[i] = size[i];
+        if (even) {
+            g = cell_at(&lattice->cell, at[0], at[1], at[2]);
+        } else {
+            g = distance_and_slope(slope, lattice, at);
+            const double length[3] = {stretch[0][i], stretch[1][i], stretch[2][i]};
+            unit[i] = length_of_cell(slope, length, size[i]);
+        }
+        distance[i] = g * unit[i];
+    }
+}
+
+static void find_halves(double *half, const double *unit, const iso_lattice *lattice,
+                        const iso_places *places, int32_t count) {
+    double density[GRADING_BLOCK];
+    grading_evaluate(density, &lattice->density, places->variable, count);
+    for (int32_t i = 0; i < count; i++)
+        half[i] = unit[i] > 0 ? half_of(lattice, density[i], unit[i]) : -HUGE_VAL;
+}
 
 void lattice_sample_row(double *distance, double *half, const iso_lattice *lattice,
                         const iso_lattice_plane *plane, int32_t row, int32_t first, int32_t count) {
-    sample_row_uniform(distance, lattice, plane, row, first, count);
-    for (int32_t i = 0; i < count; i++)
-        half[i] = lattice->half;
+    bool straight = is_straight(lattice);
+    if (straight)
+        sample_row_straight(distance, lattice, plane, row, first, count);
+    if (lattice_is_uniform(lattice)) {
+        for (int32_t i = 0; i < count; i++)
+            half[i] = lattice->half;
+        return;
+    }
+    iso_vec3 origin = lattice->space.origin;
+    double y = plane->origin.y + plane->step * row - origin.y, unit[GRADING_BLOCK];
+    for (int32_t done = 0, n; done < count; done += n) {
+        iso_places places;
+        n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
+        for (int32_t i = 0; i < n; i++) {
+            places.value[GRADING_X][i] =
+                plane->origin.x + plane->step * (first + done + i) - origin.x;
+            places.value[GRADING_Y][i] = y;
+            places.value[GRADING_Z][i] = plane->z - origin.z;
+            unit[i] = lattice->size.value;
+        }
+        space_know(&places, &lattice->space, lattice->wanted, n);
+        if (!straight)
+            measure(distance + done, unit, lattice, &places, n);
+        find_halves(half + done, unit, lattice, &places, n);
+    }
 }
 
 void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *point,
                     int64_t count) {
-    const double *samples = lattice->samples;
-    double size = lattice->size.value;
     iso_vec3 origin = lattice->space.origin;
-    for (int64_t i = 0; i < count; i++) {
-        double x = (point[i].x - origin.x) / size, y = (point[i].y - origin.y) / size;
-        double z = (point[i].z - origin.z) / size;
-        double g = cell_at(&lattice->cell, x * samples[0], y * samples[1], z * samples[2]) * size;
-        value[i] = (lattice->cell.has_sides ? fabs(g) : g) - lattice->half;
+    double distance[GRADING_BLOCK], half[GRADING_BLOCK], unit[GRADING_BLOCK];
+    for (int64_t done = 0, n; done < count; done += n) {
+        iso_places places;
+        n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
+        for (int64_t i = 0; i < n; i++) {
+            places.value[GRADING_X][i] = point[done + i].x - origin.x;
+            places.value[GRADING_Y][i] = point[done + i].y - origin.y;
+            places.value[GRADING_Z][i] = point[done + i].z - origin.z;
+        }
+        space_know(&places, &lattice->space, lattice->wanted, (int32_t)n);
+        measure(distance, unit, lattice, &places, (int32_t)n);
+        find_halves(half, unit, lattice, &places, (int32_t)n);
+        for (int64_t i = 0; i < n; i++)
+            value[done + i] = (lattice->cell.has_sides ? fabs(distance[i]) : distance[i]) - half[i];
     }
 }

@@ -40,17 +40,51 @@ static double square_to_triangle(const iso_vec2 corner[3]) {
     return left == 3 || right == 3 ? 0 : least;
 }
 
-static void reach(iso_space *space, const iso_mesh *mesh) {
-    for (int32_t t = 0; t < mesh->triangle_count; t++) {
-        iso_vec2 corner[3];
-        for (int k = 0; k < 3; k++) {
-            iso_vec3 p = mesh->position[mesh->origin[3 * t + k]];
-            corner[k] = (iso_vec2){p.x - space->origin.x, p.y - space->origin.y};
-            double r = corner[k].x * corner[k].x + corner[k].y * corner[k].y;
-            space->largest_r = greater(space->largest_r, r);
-        }
-        space->least_r = lesser(space->least_r, square_to_triangle(corner));
+/* Sums over the volume, by the divergence theorem: div(r (x, y, 0)) = 3 r, div(R (x, y, z)) = 4 R,
+ * div(x, y, z) = 3. On a triangle the middles of its sides stand for all of it. */
+typedef struct volume_sums {
+    double volume, r, radius;
+} volume_sums;
+
+static void add_triangle(volume_sums *sums, const iso_vec3 p[3], double middle) {
+    iso_vec3 a = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+    iso_vec3 b = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+    iso_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    for (int k = 0; k < 3; k++) { /* twice the area is in n: a sixth of it for each middle */
+        const iso_vec3 *q = &p[k], *e = &p[(k + 1) % 3];
+        double x = (q->x + e->x) / 2, y = (q->y + e->y) / 2, z = (q->z + e->z) / 2 - middle;
+        double flat = (x * n.x + y * n.y) / 6, round = flat + z * n.z / 6;
+        sums->volume += round / 3;
+        sums->r += sqrt(x * x + y * y) * flat / 3;
+        sums->radius += sqrt(x * x + y * y + z * z) * round / 4;
     }
+}
+
+static double usable(double mean, double largest) {
+    return mean > largest / 100 && mean < largest ? mean : largest / 2;
+}
+
+static void measure(iso_space *space, const iso_mesh *mesh, int32_t count) {
+    double least = HUGE_VAL, middle = space->max.z / 2;
+    volume_sums sums = {0};
+    for (int32_t m = 0; m < count; m++) {
+        for (int32_t t = 0; t < mesh[m].triangle_count; t++) {
+            iso_vec3 corner[3];
+            iso_vec2 flat[3];
+            for (int k = 0; k < 3; k++) {
+                iso_vec3 p = mesh[m].position[mesh[m].origin[3 * t + k]];
+                corner[k] =
+                    (iso_vec3){p.x - space->origin.x, p.y - space->origin.y, p.z - space->origin.z};
+                flat[k] = (iso_vec2){corner[k].x, corner[k].y};
+            }
+            add_triangle(&sums, corner, middle);
+            least = lesser(least, square_to_triangle(flat));
+        }
+    }
+    double r = sqrt(space->max.x * space->max.x + space->max.y * space->max.y);
+    space->least_r = sqrt(least);
+    space->mean_r = usable(sums.r / sums.volume, r);
+    space->mean_radius = usable(sums.radius / sums.volume, sqrt(r * r + middle * middle));
 }
 
 iso_status space_make(iso_space *space, const iso_mesh *mesh, int32_t count) {
@@ -67,12 +101,8 @@ iso_status space_make(iso_space *space, const iso_mesh *mesh, int32_t count) {
     iso_vec3 origin = {(min.x + max.x) / 2, (min.y + max.y) / 2, min.z};
     *space = (iso_space){.origin = origin,
                          .min = {min.x - origin.x, min.y - origin.y, 0},
-                         .max = {max.x - origin.x, max.y - origin.y, max.z - origin.z},
-                         .least_r = HUGE_VAL};
-    for (int32_t i = 0; i < count; i++)
-        reach(space, &mesh[i]);
-    space->least_r = sqrt(space->least_r);
-    space->largest_r = sqrt(space->largest_r);
+                         .max = {max.x - origin.x, max.y - origin.y, max.z - origin.z}};
+    measure(space, mesh, count);
     return ISO_OK;
 }
 

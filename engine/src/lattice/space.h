@@ -8,9 +8,10 @@
 #include "lattice/grading.h"
 
 typedef struct iso_space {
-    iso_vec3 origin;           /* of the frame, in the meshes' coordinates */
-    iso_vec3 min, max;         /* of the part, in the frame */
-    double least_r, largest_r; /* mm from the z axis, over the part's surface */
+    iso_vec3 origin;        /* of the frame, in the meshes' coordinates */
+    iso_vec3 min, max;      /* of the part, in the frame */
+    double least_r, mean_r; /* mm from the z axis: of the surface, of the volume's mean */
+    double mean_radius;     /* mm from the box's middle, of the volume's mean */
 } iso_space;
 
 iso_status space_make(iso_space *space, const iso_mesh *mesh, int32_t count) ISO_MUST_CHECK;
