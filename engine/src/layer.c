@@ -175,7 +175,8 @@ typedef struct iso_filling {
     iso_layer *layer;
     iso_hand *hand;
     const iso_island_search *areas;
-    const iso_region *beneath; /* outline of the layer below; NULL: the bed */
+    const iso_region *beneath;  /* outline of the layer below; NULL: the bed */
+    const iso_lattice *lattice; /* what fills sparse areas, or NULL */
 } iso_filling;
 
 /* Inset each part of the region by half a spacing, for the middles of the lines, and fill it. */
@@ -190,6 +191,12 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
     ISO_TRY(iso_offset(&hand->inside, part, &inset, hand->planar));
     ISO_TRY(check(&hand->inside, hand));
     grouped.like.group = group;
+    grouped.margin = f->layer->settings.fill_inset;
+    if (fill->pattern >= ISO_PATTERN_LATTICE) {
+        iso_lattice_slice slice = {.lattice = f->lattice, .z = iso_mm(fill->z)};
+        return lattice_fill(&f->layer->paths, &hand->inside, &slice, &grouped, &hand->arena,
+                            hand->planar);
+    }
     if (f->layer->settings.gap.least > 0 && fill->like.role != ISO_ROLE_IRONING &&
         fill->like.role != ISO_ROLE_BRIDGE_INFILL) {
         iso_gap_options gap = f->layer->settings.gap;
@@ -198,7 +205,6 @@ static iso_status fill_part(const iso_filling *f, const iso_region *part,
         ISO_TRY(
             iso_gap_fill_left(&f->layer->paths, part, &hand->inside, &reach, &gap, hand->planar));
     }
-    grouped.margin = f->layer->settings.fill_inset;
     return iso_fill(&f->layer->paths, &hand->inside, &grouped, &hand->arena, hand->planar);
 }
 
@@ -227,6 +233,14 @@ static iso_status fill_region(const iso_filling *f, const iso_region *region,
         ISO_TRY(fill_part(f, &hand->part, fill, group_of(f, region, &parts, i)));
     }
     return ISO_OK;
+}
+
+/* With the lattice of modifier k, if any. */
+static iso_status fill_sparse(const iso_filling *f, int32_t k, const iso_region *region,
+                              const iso_fill_options *fill) {
+    iso_filling filling = *f;
+    filling.lattice = f->layer->lattice ? f->layer->lattice[k] : NULL;
+    return fill_region(&filling, region, fill);
 }
 
 /* Each bridge in the direction that suits it. */
@@ -261,7 +275,7 @@ static iso_status fill_modified(const iso_filling *f) {
         iso_fill_options fill;
         ISO_TRY(check(modified_piece(modified, k), f->hand));
         if (modifiers_fill(&fill, layer->modifiers, k, layer->index))
-            ISO_TRY(fill_region(f, modified_piece(modified, k), &fill));
+            ISO_TRY(fill_sparse(f, k, modified_piece(modified, k), &fill));
     }
     return ISO_OK;
 }
@@ -273,7 +287,7 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
     iso_island_search search;
     ISO_TRY(islands_of(&areas, &layer->area, &hand->arena));
     ISO_TRY(island_search_new(&search, &layer->area, &areas, &hand->arena));
-    iso_filling filling = {layer, hand, &search, beneath ? &beneath->region : NULL};
+    iso_filling filling = {layer, hand, &search, beneath ? &beneath->region : NULL, NULL};
     ISO_TRY(fill_bridges(&filling));
     ISO_TRY(fill_region(&filling, &shell->lid, &s->lid));
     ISO_TRY(fill_region(&filling, &shell->top, &s->top));
@@ -282,7 +296,7 @@ static iso_status fill_shelled(iso_layer *layer, iso_hand *hand, const iso_layer
         ISO_TRY(fill_modified(&filling));
     else if (s->has_sparse)
         ISO_TRY(
-            fill_region(&filling, layer->combined ? &layer->alone : &shell->sparse, &s->sparse));
+            fill_sparse(&filling, 0, layer->combined ? &layer->alone : &shell->sparse, &s->sparse));
     if (layer->combined)
         ISO_TRY(fill_region(&filling, &layer->together, &s->together));
     if (s->irons > 0)
@@ -346,7 +360,7 @@ iso_status layer_fill(iso_layer *layer, iso_hand *hand, const iso_layer *beneath
     if (shelled)
         status = fill_shelled(layer, hand, beneath);
     else if (s->has_sparse)
-        status = fill_region(&all, &layer->area, &s->sparse);
+        status = fill_sparse(&all, 0, &layer->area, &s->sparse);
     iso_arena_pop(&hand->arena, mark);
     layer->seconds[ISO_STAGE_SHELLS] += ready - begun;
     layer->seconds[ISO_STAGE_FILL] = iso_stage_clock() - ready;

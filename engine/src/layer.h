@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "config/settings.h"
+#include "lattice/slice.h"
 #include "modifier.h"
 #include "repeat.h"
 
@@ -31,9 +32,10 @@ double iso_stage_clock(void); /* seconds, from some fixed time on */
 
 typedef struct iso_layer {
     iso_layer_settings settings;
-    int32_t index;                  /* counts from 0 */
-    const iso_modifiers *modifiers; /* or NULL */
-    iso_region region;              /* the outline */
+    int32_t index;                     /* counts from 0 */
+    const iso_modifiers *modifiers;    /* or NULL */
+    const iso_lattice *const *lattice; /* [modifiers + 1], or NULL: of each sparse fill */
+    iso_region region;                 /* the outline */
     iso_region *run; /* [levels] what it shares with the layers above, coarsely (shell.h) */
     int32_t levels;
     iso_region area; /* within the walls, island by island */

@@ -97,6 +97,32 @@ static iso_status verify_volume(iso_stack *stack, const iso_object *object) {
                     object->name, stack->sliced_volume, stack->mesh_volume);
 }
 
+static const iso_options *options_at(const iso_stack *stack, int32_t k) {
+    return stack->modifiers ? modifiers_options(stack->modifiers, k) : stack->options;
+}
+
+static int32_t lattices(const iso_stack *stack) {
+    return (stack->modifiers ? stack->modifiers->count : 0) + 1;
+}
+
+/* The meshes tell how far it is to the skin. */
+static iso_status make_lattices(iso_stack *stack, const iso_object *object) {
+    bool any = false;
+    for (int32_t k = 0; k < lattices(stack); k++)
+        any = any || settings_have_lattice(options_at(stack, k));
+    if (!any)
+        return ISO_OK;
+    ISO_TRY(ISO_ALLOCATE(stack->lattice, lattices(stack)));
+    memset(stack->lattice, 0, (size_t)lattices(stack) * sizeof *stack->lattice);
+    for (int32_t k = 0; k < lattices(stack); k++) {
+        char percent[32];
+        iso_lattice_options options = settings_of_lattice(options_at(stack, k), percent);
+        if (options.pattern >= 0)
+            ISO_TRY(lattice_new(&stack->lattice[k], &options, object->mesh, object->mesh_count));
+    }
+    return ISO_OK;
+}
+
 iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *options,
                        iso_modifiers *modifiers, const iso_crew *crew) {
     stack->options = modifiers ? modifiers_shell_options(modifiers) : options;
@@ -105,6 +131,7 @@ iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *
     stack->crew = crew;
     stack->block = LAYERS_PER_THREAD * crew->count;
     ISO_TRY(make_levels(stack, object));
+    ISO_TRY(make_lattices(stack, object));
     ISO_TRY(slice_meshes(stack, object));
     ISO_TRY(verify_volume(stack, object));
     if (modifiers)
@@ -122,6 +149,9 @@ void stack_free(iso_stack *stack) {
         iso_slices_free(&stack->slices[i]);
     iso_release(stack->slices);
     iso_release(stack->combination);
+    for (int32_t k = 0; stack->lattice && k < lattices(stack); k++)
+        lattice_free(stack->lattice[k]);
+    iso_release(stack->lattice);
     window_free(&stack->window);
     iso_levels_free(&stack->levels);
 }
@@ -145,6 +175,7 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
     }
     layer->index = index;
     layer->modifiers = stack->modifiers;
+    layer->lattice = (const iso_lattice *const *)stack->lattice;
     if (stack->options->ironing_type == ISO_IRONING_TOPMOST && index + 1 < stack->levels.count)
         layer->settings.irons = 0;
     return layer_outline(layer, &stack->crew->hand[worker], stack->slices, stack->model_count,

@@ -34,6 +34,8 @@ typedef struct iso_stack {
     double sliced_volume; /* mm^3 of their slices */
     double projected;     /* mm^2 of all triangles seen from above */
     iso_window window;
+    iso_lattice **lattice; /* [modifiers + 1] of each modifier and, last, of the rest, where sparse
+                            * fill is a lattice; or NULL */
     iso_combination *combination; /* [levels.count] whose sparse fill is drawn at once; or NULL */
     int32_t block;                /* layers filled in one go */
     int32_t around;               /* layers whose shells each of them looks at, above and below */
