@@ -52,19 +52,33 @@ typedef enum iso_lattice_map { /* what u, v, w are cells of */
                                ISO_LATTICE_MAP_COUNT
 } iso_lattice_map;
 
+/* Places where a lattice is void whatever its pattern: pieces that hold to nothing. A grid of
+ * voxels in the part's frame, and runs of them. Borrowed while the lattice is in use. */
+typedef struct iso_lattice_run {
+    int32_t z, y, first, end; /* voxels; x from `first` to `end`, that one excluded */
+} iso_lattice_run;
+
+typedef struct iso_lattice_cut {
+    iso_vec3 min; /* mm, middle of voxel 0 */
+    double voxel; /* mm, edge */
+    int64_t count;
+    const iso_lattice_run *run; /* by z, then y, then first; none overlap */
+} iso_lattice_cut;
+
 /* Texts are expressions in x, y, z, skin (mm to the part's surface, inwards), r (mm from the z
  * axis) and grid (the value of lattice_grid at the point), or plain numbers; borrowed while in use.
  */
 typedef struct iso_lattice_options {
-    int32_t pattern;     /* iso_lattice_pattern */
-    int32_t map;         /* iso_lattice_map */
-    const char *cell;    /* mm, edge of a cell */
-    const char *density; /* percent */
-    uint64_t seed;       /* of what is random */
-    double pore;         /* of VOXEL_RANDOM: cells across a usual pore, 0.05 to 1 */
-    const char *file;    /* of VOXEL_FILE; else not looked at */
-    const char *grid;    /* a .vdb file for the variable `grid`; "" is none */
-    double skin_voxel;   /* mm; the distance to the skin is sampled so finely; 0: box / 128 */
+    int32_t pattern;            /* iso_lattice_pattern */
+    int32_t map;                /* iso_lattice_map */
+    const char *cell;           /* mm, edge of a cell */
+    const char *density;        /* percent */
+    uint64_t seed;              /* of what is random */
+    double pore;                /* of VOXEL_RANDOM: cells across a usual pore, 0.05 to 1 */
+    const char *file;           /* of VOXEL_FILE; else not looked at */
+    const char *grid;           /* a .vdb file for the variable `grid`; "" is none */
+    const iso_lattice_cut *cut; /* NULL: none */
+    double skin_voxel; /* mm; the distance to the skin is sampled so finely; 0: box / 128 */
 } iso_lattice_options;
 
 /* gyroid_sheet, cells of 5 mm, 20 percent, x y z. */
