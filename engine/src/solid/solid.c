@@ -216,6 +216,8 @@ static iso_status find(point_chunk *chunk, int32_t *done, const iso_solid *solid
             return tree_failed(status);
         if (*done > 0)
             return ISO_OK;
+        if (chunk->first[1] <= chunk->capacity)
+            return tree_failed(ISO_BUG);
         int32_t *more;
         ISO_TRY(ISO_ALLOCATE(more, chunk->first[1]));
         if (chunk->found != chunk->usual)
