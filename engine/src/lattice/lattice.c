@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "lattice/cut.h"
 #include "lattice/grading.h"
 #include "lattice/map.h"
 #include "lattice/space.h"
@@ -13,10 +14,11 @@ struct iso_lattice {
     iso_grading size, density; /* mm; percent */
     iso_space space;
     iso_cell_map map;
-    uint32_t wanted;   /* variables, as bits */
-    double samples[3]; /* of the table, in a cell */
-    double smallest;   /* mm, of a cell's edge */
-    double half;       /* mm, where density and size are constant */
+    const iso_lattice_cut *cut; /* NULL: none */
+    uint32_t wanted;            /* variables, as bits */
+    double samples[3];          /* of the table, in a cell */
+    double smallest;            /* mm, of a cell's edge */
+    double half;                /* mm, where density and size are constant */
 };
 
 static const double least_cell = 0.2, most_cell = 1e5; /* mm */
@@ -111,7 +113,7 @@ static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
     ISO_TRY(grading_make(&lattice->size, options->cell, "lattice_cell"));
     ISO_TRY(grading_make(&lattice->density, options->density, "lattice_density"));
     lattice->wanted = find_wanted(lattice, options->map);
-    ISO_TRY(space_make(&lattice->space, mesh, count));
+    ISO_TRY(space_make(&lattice->space, options, lattice->wanted, mesh, count));
     ISO_TRY(check_sizes(lattice));
     ISO_TRY(cell_make(&lattice->cell, options));
     ISO_TRY(map_make(&lattice->map, options->map, &lattice->space, &lattice->size,
@@ -119,6 +121,7 @@ static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
     lattice->smallest = narrowest(lattice);
     for (int k = 0; k < 3; k++)
         lattice->samples[k] = (double)lattice->cell.size[k] / lattice->cell.repeat[k];
+    lattice->cut = options->cut && options->cut->count > 0 ? options->cut : NULL;
     lattice->half = half_of(lattice, lattice->density.value, lattice->size.value);
     return ISO_OK;
 }
@@ -142,6 +145,7 @@ void lattice_free(iso_lattice *lattice) {
         return;
     grading_free(&lattice->size);
     grading_free(&lattice->density);
+    space_free(&lattice->space);
     map_free(&lattice->map);
     cell_free(&lattice->cell);
     iso_release(lattice);
@@ -157,7 +161,7 @@ static bool is_straight(const iso_lattice *lattice) {
 }
 
 int lattice_is_uniform(const iso_lattice *lattice) {
-    return is_straight(lattice) && !lattice->density.expression;
+    return is_straight(lattice) && !lattice->density.expression && !lattice->cut;
 }
 
 double lattice_smallest_cell(const iso_lattice *lattice) {
@@ -325,33 +329,58 @@ static void find_halves(double *half, const double *unit, const iso_lattice *lat
         half[i] = unit[i] > 0 ? half_of(lattice, density[i], unit[i]) : -HUGE_VAL;
 }
 
+/* Void where the cut says so: as deep in it as a voxel is long. Runs are walked along the row. */
+static void cut_row(double *distance, double *half, const iso_lattice *lattice, iso_vec3 at,
+                    double step, int32_t count) {
+    const iso_lattice_cut *cut = lattice->cut;
+    double begin = at.x;
+    for (int64_t i = 0, run = cut_find(cut, at); i < count; i++) {
+        at.x = begin + step * (double)i;
+        while (run < cut->count && cut_is_before(cut, run, at))
+            run++;
+        if (!cut_meets(cut, run, at))
+            continue;
+        distance[i] = 0;
+        half[i] = -cut->voxel;
+    }
+}
+
+/* Nodes in the frame, at most a block, from `at` along x. */
+static void place_nodes(iso_places *places, iso_vec3 at, const iso_lattice_plane *plane,
+                        double origin, int32_t first, int32_t count) {
+    for (int32_t i = 0; i < count; i++) {
+        places->value[GRADING_X][i] = plane->origin.x + plane->step * (first + i) - origin;
+        places->value[GRADING_Y][i] = at.y;
+        places->value[GRADING_Z][i] = at.z;
+    }
+}
+
 void lattice_sample_row(double *distance, double *half, const iso_lattice *lattice,
                         const iso_lattice_plane *plane, int32_t row, int32_t first, int32_t count) {
-    bool straight = is_straight(lattice);
+    bool straight = is_straight(lattice), even = straight && !lattice->density.expression;
     if (straight)
         sample_row_straight(distance, lattice, plane, row, first, count);
-    if (lattice_is_uniform(lattice)) {
-        for (int32_t i = 0; i < count; i++)
-            half[i] = lattice->half;
+    for (int32_t i = 0; i < count && even; i++)
+        half[i] = lattice->half;
+    if (lattice_is_uniform(lattice))
         return;
-    }
     iso_vec3 origin = lattice->space.origin;
-    double y = plane->origin.y + plane->step * row - origin.y, unit[GRADING_BLOCK];
-    for (int32_t done = 0, n; done < count; done += n) {
+    iso_vec3 at = {plane->origin.x - origin.x + plane->step * first,
+                   plane->origin.y + plane->step * row - origin.y, plane->z - origin.z};
+    double unit[GRADING_BLOCK];
+    for (int32_t done = 0, n; done < count && !even; done += n) {
         iso_places places;
         n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
-        for (int32_t i = 0; i < n; i++) {
-            places.value[GRADING_X][i] =
-                plane->origin.x + plane->step * (first + done + i) - origin.x;
-            places.value[GRADING_Y][i] = y;
-            places.value[GRADING_Z][i] = plane->z - origin.z;
-            unit[i] = lattice->size.value;
-        }
+        place_nodes(&places, at, plane, origin.x, first + done, n);
         space_know(&places, &lattice->space, lattice->wanted, n);
+        for (int32_t i = 0; i < n && straight; i++)
+            unit[i] = lattice->size.value;
         if (!straight)
             measure(distance + done, unit, lattice, &places, n);
         find_halves(half + done, unit, lattice, &places, n);
     }
+    if (lattice->cut)
+        cut_row(distance, half, lattice, at, plane->step, count);
 }
 
 void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *point,
@@ -371,5 +400,11 @@ void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *p
         find_halves(half, unit, lattice, &places, (int32_t)n);
         for (int64_t i = 0; i < n; i++)
             value[done + i] = (lattice->cell.has_sides ? fabs(distance[i]) : distance[i]) - half[i];
+        for (int64_t i = 0; i < n && lattice->cut; i++) {
+            iso_vec3 at = {places.value[GRADING_X][i], places.value[GRADING_Y][i],
+                           places.value[GRADING_Z][i]};
+            if (cut_meets(lattice->cut, cut_find(lattice->cut, at), at))
+                value[done + i] = lattice->cut->voxel;
+        }
     }
 }

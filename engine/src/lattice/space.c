@@ -1,6 +1,9 @@
 #include "lattice/space.h"
 
 #include <math.h>
+#include <stddef.h>
+
+#include "lattice/skin.h"
 
 static double lesser(double a, double b) {
     return a < b ? a : b;
@@ -87,7 +90,7 @@ static void measure(iso_space *space, const iso_mesh *mesh, int32_t count) {
     space->mean_radius = usable(sums.radius / sums.volume, sqrt(r * r + middle * middle));
 }
 
-iso_status space_make(iso_space *space, const iso_mesh *mesh, int32_t count) {
+static iso_status find_frame(iso_space *space, const iso_mesh *mesh, int32_t count) {
     iso_vec3 min = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, max = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     int64_t triangles = 0;
     for (int32_t i = 0; i < count; i++) {
@@ -99,11 +102,69 @@ iso_status space_make(iso_space *space, const iso_mesh *mesh, int32_t count) {
     if (triangles == 0)
         return iso_fail(ISO_UNSLICEABLE, "a lattice in no part: there are no triangles");
     iso_vec3 origin = {(min.x + max.x) / 2, (min.y + max.y) / 2, min.z};
-    *space = (iso_space){.origin = origin,
-                         .min = {min.x - origin.x, min.y - origin.y, 0},
-                         .max = {max.x - origin.x, max.y - origin.y, max.z - origin.z}};
-    measure(space, mesh, count);
+    space->origin = origin;
+    space->min = (iso_vec3){min.x - origin.x, min.y - origin.y, 0};
+    space->max = (iso_vec3){max.x - origin.x, max.y - origin.y, max.z - origin.z};
     return ISO_OK;
+}
+
+/* ---- skin and grid ---- */
+
+static iso_status make_skin(iso_space *space, const iso_lattice_options *options,
+                            const iso_mesh *mesh, int32_t count) {
+    iso_vec3 side = {2 * space->max.x, 2 * space->max.y, space->max.z};
+    double largest = greater(side.x, greater(side.y, side.z));
+    double smallest = lesser(side.x, lesser(side.y, side.z));
+    double voxel = options->skin_voxel > 0 ? options->skin_voxel : largest / 128;
+    const iso_skin_options skin = {space->origin, voxel, smallest / 2 + 2 * voxel};
+    return skin_make(&space->skin, mesh, count, &skin);
+}
+
+static iso_status make_grid(iso_space *space, const iso_lattice_options *options) {
+    if (!options->grid || !*options->grid)
+        return iso_fail(ISO_BAD_CONFIG, "an expression has grid in it, but lattice_grid names no "
+                                        ".vdb file");
+    return volume_read(&space->grid, options->grid, NULL);
+}
+
+iso_status space_make(iso_space *space, const iso_lattice_options *options, uint32_t wanted,
+                      const iso_mesh *mesh, int32_t count) {
+    *space = (iso_space){0};
+    iso_status status = find_frame(space, mesh, count);
+    if (status != ISO_OK)
+        return status;
+    measure(space, mesh, count);
+    if (wanted >> GRADING_GRID & 1)
+        status = make_grid(space, options);
+    if (status == ISO_OK && (wanted >> GRADING_SKIN & 1))
+        status = make_skin(space, options, mesh, count);
+    if (status != ISO_OK)
+        space_free(space);
+    return status;
+}
+
+void space_free(iso_space *space) {
+    volume_free(space->skin);
+    volume_free(space->grid);
+    space->skin = space->grid = NULL;
+}
+
+/* A volume's samples come from another library: 24 bits of each are taken for true, lest the last
+ * ones decide anything. */
+static double trusted(double value) {
+    double spread = value * 536870913; /* 2^29 + 1 */
+    return spread - (spread - value);
+}
+
+static void sample_volume(double *value, const iso_volume *volume, const iso_places *places,
+                          double factor, int32_t count) {
+    iso_vec3 point[GRADING_BLOCK] = {0};
+    for (int32_t i = 0; i < count; i++)
+        point[i] = (iso_vec3){places->value[GRADING_X][i], places->value[GRADING_Y][i],
+                              places->value[GRADING_Z][i]};
+    iso_status status = volume_sample(value, volume, point, count);
+    for (int32_t i = 0; i < count; i++)
+        value[i] = status == ISO_OK ? trusted(value[i] * factor) : (double)NAN;
 }
 
 void space_know(iso_places *places, const iso_space *space, uint32_t wanted, int32_t count) {
@@ -113,4 +174,8 @@ void space_know(iso_places *places, const iso_space *space, uint32_t wanted, int
     if (wanted >> GRADING_R & 1)
         for (int32_t i = 0; i < count; i++)
             places->value[GRADING_R][i] = sqrt(x[i] * x[i] + y[i] * y[i]);
+    if (wanted >> GRADING_SKIN & 1)
+        sample_volume(places->value[GRADING_SKIN], space->skin, places, -1, count);
+    if (wanted >> GRADING_GRID & 1)
+        sample_volume(places->value[GRADING_GRID], space->grid, places, 1, count);
 }
