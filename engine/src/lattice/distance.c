@@ -236,12 +236,22 @@ static void take_block(work *w, hunt *h, int32_t x, int32_t y, int32_t z) {
     }
 }
 
+/* Square of the way from the middle of a block to another, `step` blocks on along each axis. */
+static int32_t gap(int32_t x, int32_t y, int32_t z) {
+    int32_t step[3] = {abs(x), abs(y), abs(z)}, square = 0;
+    for (int a = 0; a < 3; a++)
+        if (step[a] > 0)
+            square += (BLOCK * step[a] - BLOCK / 2) * (BLOCK * step[a] - BLOCK / 2);
+    return square;
+}
+
 static void take_ring(work *w, hunt *h, int32_t ring) {
     for (int32_t z = -ring; z <= ring; z++)
         for (int32_t y = -ring; y <= ring; y++) {
             int32_t on = abs(z) == ring || abs(y) == ring;
             for (int32_t x = -ring; x <= ring; x += on || ring == 0 ? 1 : 2 * ring)
-                take_block(w, h, x, y, z);
+                if ((float)gap(x, y, z) <= h->most)
+                    take_block(w, h, x, y, z);
         }
 }
 

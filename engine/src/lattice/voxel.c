@@ -1,11 +1,12 @@
 /* Structures of voxels by rule. */
-#include "lattice/family.h"
+#include "lattice/voxel.h"
 
 #include <math.h>
 
 #include "base/memory.h"
 #include "base/series.h"
 #include "lattice/distance.h"
+#include "lattice/family.h"
 #include "lattice/random.h"
 
 /* Bars along the edges of the cell: where two of the three coordinates are within half a bar of a
@@ -59,8 +60,7 @@ static void blur_row(float *row, int32_t length, const float *weight, int32_t ra
             row[i] += weight[r] * (middle[i + r] + middle[i - r]);
 }
 
-/* By a bell curve along each axis. */
-static iso_status blur(float *field, int32_t size, double sigma) {
+iso_status voxel_blur(float *field, int32_t size, double sigma) {
     float weight[RADIUS_MAX + 1], *other, *padded;
     int32_t radius = (int32_t)(3.5 * sigma) + 1;
     radius = radius < RADIUS_MAX ? radius : RADIUS_MAX;
@@ -117,7 +117,7 @@ iso_status voxel_random_fill(iso_lattice_cell *cell, const iso_lattice_options *
         for (int bit = 0; bit < 64; bit++)
             g[i + bit] = bits >> bit & 1 ? 1.0f : -1.0f;
     }
-    ISO_TRY(blur(g, size, sigma));
+    ISO_TRY(voxel_blur(g, size, sigma));
     ISO_TRY(distance_from_field(g, size, ISO_FIELD_ANY));
     float step = (float)cell->repeat[0] / (float)size;
     for (int64_t i = 0; i < count; i++)
