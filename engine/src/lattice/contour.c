@@ -154,20 +154,14 @@ iso_status contour_trace(contour *out, const contour_grid *grid, iso_arena *scra
     return ISO_OK;
 }
 
-int32_t contour_curve(contour *c, int32_t *count, int *closed) {
+int32_t contour_start(contour *c, int *closed) {
     for (; c->pass < 2; c->pass++, c->cursor = 0)
         for (; c->cursor < c->count; c->cursor++) {
-            contour_crossing *at = contour_at(c, c->cursor);
+            const contour_crossing *at = contour_at(c, c->cursor);
             if (at->walked || (c->pass == 0 && at->entered))
                 continue;
-            int32_t start = c->cursor++, i = start;
-            for (*count = 0; i >= 0 && !at->walked; ++*count) {
-                at->walked = 1;
-                i = at->next;
-                at = i >= 0 ? contour_at(c, i) : at;
-            }
             *closed = c->pass;
-            return start;
+            return c->cursor++;
         }
     return -1;
 }

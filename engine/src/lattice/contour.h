@@ -40,7 +40,7 @@ enum { CONTOUR_BLOCK = 4096 };
 typedef struct contour {
     contour_crossing **block; /* of CONTOUR_BLOCK crossings each */
     int32_t count;
-    int32_t cursor, pass; /* of contour_curve */
+    int32_t cursor, pass; /* of contour_start */
 } contour;
 
 static inline contour_crossing *contour_at(const contour *c, int32_t i) {
@@ -50,8 +50,18 @@ static inline contour_crossing *contour_at(const contour *c, int32_t i) {
 /* All in `scratch`. */
 iso_status contour_trace(contour *out, const contour_grid *grid, iso_arena *scratch) ISO_MUST_CHECK;
 
-/* Curve after curve, open ones first: the crossing that it starts with, or -1 after the last. Open
- * curves end with next = -1; closed ones lead back to where they start. */
-int32_t contour_curve(contour *c, int32_t *count, int *closed);
+/* Curve after curve, open ones first: the crossing that it starts with, or -1 after the last. Each
+ * has to be walked before the next is asked for. */
+int32_t contour_start(contour *c, int *closed);
+
+/* The crossing *i, and on to the next; NULL after the curve's last. */
+static inline const contour_crossing *contour_step(const contour *c, int32_t *i) {
+    contour_crossing *at = *i >= 0 ? contour_at(c, *i) : NULL;
+    if (!at || at->walked)
+        return NULL;
+    at->walked = 1;
+    *i = at->next;
+    return at;
+}
 
 #endif

@@ -4,7 +4,7 @@
 
 /* Samples a cell for a start, and for what is thinner than a sheet: the least strut asked for is a
  * tenth of a cell thick. */
-enum { SHEET_SAMPLES = 16, SAMPLES = 32 };
+enum { SHEET_SAMPLES = 20, SAMPLES = 32 };
 /* mm; how far a chord between samples of a large cell may lie from its curve: curves there have
  * radii of a quarter of a cell, more or less. */
 #define CHORD 0.01

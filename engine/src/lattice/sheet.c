@@ -7,19 +7,19 @@
 
 /* Net widths, in usual ones. A sheet is as thick as its section is wide where it stands upright;
  * elsewhere the section is wider, by 1.27 on average. */
-#define LEAST 0.6
+#define LEAST 0.35
 #define MOST 2.2
 #define THICKEST 1.15 /* of a sheet that one line is drawn for */
 /* Of the width of a bead: its line's tolerance, and how much the width may change before the piece
  * of line with that width ends. */
-#define TOLERANCE (1.0 / 32)
-#define WIDTH_CHANGE 0.15
+#define TOLERANCE (1.0 / 24)
+#define WIDTH_CHANGE 0.25
 
-enum {
-    LINES_MOST = 8,  /* side by side */
-    WIDTH_STEPS = 16 /* widths as they are told are rounded to so many steps of the usual one:
-                      * sections aren't */
-};
+/* Of the usual width: how far the width that is told may be off, so that not every piece has to
+ * tell its own. Sections are exact. */
+#define WIDTH_TOLD 0.2
+
+enum { LINES_MOST = 8 }; /* side by side */
 
 sheet_bead sheet_bead_of(const iso_fill_options *fill) {
     const double corners = 0.21460183660255172; /* 1 - pi / 4 */
@@ -119,13 +119,14 @@ static double length_of(const strand *s, int32_t i) {
     return sqrt(dx * dx + dy * dy);
 }
 
-static iso_weave_bead bead_of(const drawing *d, double width) {
+static iso_weave_bead bead_of(const drawing *d, double width, int32_t told) {
     const sheet_bead *bead = d->bead;
-    double step = bead->usual / WIDTH_STEPS;
     width *= d->scale;
     width = width > bead->least ? width : bead->least;
-    double told = floor(width / step + 0.5) * step + bead->corners;
-    return (iso_weave_bead){(int32_t)(told + 0.5), (int32_t)(width * bead->height + 0.5)};
+    double full = width + bead->corners;
+    if (fabs(full - told) > WIDTH_TOLD * bead->usual)
+        told = (int32_t)(full + 0.5);
+    return (iso_weave_bead){told, (int32_t)(width * bead->height + 0.5)};
 }
 
 static iso_point rounded(double x, double y) {
@@ -190,7 +191,8 @@ static void thin(beads *out, const drawing *d, const strand *s) {
         double dx = s->x[j] - s->x[i], dy = s->y[j] - s->y[i], chord = sqrt(dx * dx + dy * dy);
         int32_t n = out->count++;
         out->point[n] = rounded(s->x[j], s->y[j]);
-        out->bead[n] = bead_of(d, chord > 0 ? volume / chord : 0);
+        out->bead[n] = bead_of(d, chord > 0 ? volume / chord : 0,
+                               n > 1 ? out->bead[n - 1].width : d->fill->width);
         out->square[n] = square;
     }
 }
@@ -253,25 +255,28 @@ static strand room_from(const strand *all, int32_t i) {
 }
 
 /* A curve of the contour as it is, in units; a closed one has its first point at its end again. */
-static void read_curve(strand *s, const drawing *d, const contour *c, int32_t start, int32_t count,
-                       bool closed) {
+static void read_curve(strand *s, const drawing *d, const contour *c, int32_t start, bool closed) {
     const raster *r = &d->samples->raster;
-    s->count = count + closed;
-    for (int32_t k = 0, i = start; k < s->count; k++) {
-        const contour_crossing *at = contour_at(c, i);
+    int32_t k = 0, i = start;
+    for (const contour_crossing *at; (at = contour_step(c, &i)); k++) {
         s->x[k] = r->x + at->x * r->step;
         s->y[k] = r->y + at->y * r->step;
         s->width[k] = at->extra;
         s->square[k] = at->next >= 0 ? r->square[at->square] : RASTER_BOUNDARY;
-        i = at->next;
     }
+    if (closed) {
+        s->x[k] = s->x[0];
+        s->y[k] = s->y[0];
+        s->width[k] = s->width[0];
+        s->square[k++] = RASTER_BOUNDARY;
+    }
+    s->count = k;
 }
 
 static iso_status draw_curves(const drawing *d, contour *c, strand *s, beads *b) {
-    int32_t count;
     int closed;
-    for (int32_t start; (start = contour_curve(c, &count, &closed)) >= 0;) {
-        read_curve(s, d, c, start, count, closed);
+    for (int32_t start; (start = contour_start(c, &closed)) >= 0;) {
+        read_curve(s, d, c, start, closed);
         for (int32_t i = 0; i < s->count; i++) {
             strand part = room_from(s, i);
             while (i + part.count < s->count && part.width[part.count] > 0)

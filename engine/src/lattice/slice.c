@@ -50,14 +50,12 @@ static void far_row(contour_row *out, void *context, int32_t j) {
 static iso_status add_curve(iso_region *raw, const contour *c, int32_t start, const raster *r,
                             iso_point *point, bool turned) {
     int32_t count = 0, i = start;
-    do {
-        const contour_crossing *at = contour_at(c, i);
+    for (const contour_crossing *at; (at = contour_step(c, &i));) {
         iso_point p = {(int32_t)floor(r->x + at->x * r->step + 0.5),
                        (int32_t)floor(r->y + at->y * r->step + 0.5)};
         if (count == 0 || point[count - 1].x != p.x || point[count - 1].y != p.y)
             point[count++] = p;
-        i = at->next;
-    } while (i != start && i >= 0);
+    }
     while (count > 1 && point[count - 1].x == point[0].x && point[count - 1].y == point[0].y)
         count--;
     if (count < 3)
@@ -76,13 +74,12 @@ static iso_status add_contours(iso_region *raw, siding *s, bool far, iso_arena *
         .columns = r->columns, .rows = r->rows, .row = far ? far_row : row, .context = s};
     contour c;
     iso_point *point;
-    int32_t count;
     int closed;
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     ISO_TRY(ISO_PUSH(s->value, scratch, 2 * (int64_t)r->columns));
     ISO_TRY(contour_trace(&c, &grid, scratch));
     ISO_TRY(ISO_PUSH(point, scratch, c.count));
-    for (int32_t start; (start = contour_curve(&c, &count, &closed)) >= 0;)
+    for (int32_t start; (start = contour_start(&c, &closed)) >= 0;)
         ISO_TRY(add_curve(raw, &c, start, r, point, far));
     iso_arena_pop(scratch, mark);
     return ISO_OK;
