@@ -73,6 +73,13 @@ iso_status iso_report_warn_mended(iso_report *report, const char *path,
     if (found->sheets > 0)
         length += (size_t)snprintf(text + length, sizeof text - length, " of %g mm",
                                    found->sheet_thickness);
+    if (found->voxel > 0)
+        length +=
+            (size_t)snprintf(text + length, sizeof text - length,
+                             "%smade anew on a grid of %.4g mm from %lld triangles, %.3g mm "
+                             "off at most, %.2g in the mean",
+                             length > 0 ? "; " : "", found->voxel, (long long)found->triangles_read,
+                             found->largest_error, found->mean_error);
     return length == 0 ? ISO_OK : iso_report_warn(report, "mesh-mended", "%s: %s", path, text);
 }
 
@@ -122,6 +129,11 @@ void iso_json_defects(iso_json *json, const iso_mesh_defects *defects) {
     iso_json_number(json, "cap_area_mm2", defects->cap_area);
     iso_json_integer(json, "sheets", defects->sheets);
     iso_json_number(json, "sheet_thickness_mm", defects->sheet_thickness);
+    if (defects->voxel > 0) {
+        iso_json_number(json, "voxel_mm", defects->voxel);
+        iso_json_number(json, "largest_error_mm", defects->largest_error);
+        iso_json_number(json, "mean_error_mm", defects->mean_error);
+    }
     iso_json_end(json, '}');
 }
 

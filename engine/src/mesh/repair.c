@@ -108,7 +108,7 @@ static iso_status drop_unused_vertices(iso_mesh *mesh) {
     return ISO_OK;
 }
 
-static void find_box(iso_mesh *mesh) {
+void iso_mesh_find_box(iso_mesh *mesh) {
     iso_vec3 min = mesh->position[0], max = min;
     for (int32_t v = 1; v < mesh->vertex_count; v++) {
         iso_vec3 p = mesh->position[v];
@@ -175,6 +175,6 @@ iso_status iso_mesh_repair(iso_mesh *mesh, int64_t open, int64_t excess, double 
     if (defects->degenerate || defects->duplicate || defects->cancelled ||
         defects->welded_vertices || defects->sheets)
         ISO_TRY(drop_unused_vertices(mesh));
-    find_box(mesh);
+    iso_mesh_find_box(mesh);
     return ISO_OK;
 }

@@ -72,6 +72,9 @@ iso_status iso_mesh_close_holes(iso_mesh *mesh, int64_t open, sheets *marks) ISO
 iso_status iso_mesh_find_shells(int32_t **shell, int32_t *count,
                                 const iso_mesh *mesh) ISO_MUST_CHECK;
 
+/* Set min and max by the vertices, of which there is one at least. */
+void iso_mesh_find_box(iso_mesh *mesh);
+
 /* On a closed mesh: drop shells of two coincident triangles, turn shells that are inside out. */
 iso_status iso_mesh_turn_shells(iso_mesh *mesh) ISO_MUST_CHECK;
 
