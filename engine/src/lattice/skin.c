@@ -55,7 +55,7 @@ iso_status skin_make(iso_volume **skin, const iso_mesh *mesh, int32_t count,
     ISO_TRY(iso_solid_new(&solid, mesh, count));
     skin_sides sides = {solid, options->origin};
     iso_volume_surface surface = {.voxel = options->voxel,
-                                  .outer = 4 * options->voxel,
+                                  .outer = options->outer > 0 ? options->outer : 4 * options->voxel,
                                   .inner = options->inner,
                                   .inside = tell_inside,
                                   .payload = &sides};

@@ -10,6 +10,7 @@ typedef struct iso_skin_options {
     iso_vec3 origin; /* of the frame that the volume is in, in the meshes' coordinates */
     double voxel;    /* mm */
     double inner;    /* mm; deeper inside, the distance is this */
+    double outer;    /* mm; the same outside; 0: 4 voxels */
 } iso_skin_options;
 
 /* Distances to the surface of what the meshes enclose, negative inside. */

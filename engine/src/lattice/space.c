@@ -116,7 +116,8 @@ static iso_status make_skin(iso_space *space, const iso_lattice_options *options
     double largest = greater(side.x, greater(side.y, side.z));
     double smallest = lesser(side.x, lesser(side.y, side.z));
     double voxel = options->skin_voxel > 0 ? options->skin_voxel : largest / 128;
-    const iso_skin_options skin = {space->origin, voxel, smallest / 2 + 2 * voxel};
+    const iso_skin_options skin = {
+        .origin = space->origin, .voxel = voxel, .inner = smallest / 2 + 2 * voxel};
     return skin_make(&space->skin, mesh, count, &skin);
 }
 
