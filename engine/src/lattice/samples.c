@@ -5,6 +5,8 @@
 /* Samples a cell for a start, and for what is thinner than a sheet: the least strut asked for is a
  * tenth of a cell thick. */
 enum { SHEET_SAMPLES = 20, SAMPLES = 32 };
+/* What a period holds is measured in so many times finer steps. */
+enum { FINER = 3 };
 /* mm; how far a chord between samples of a large cell may lie from its curve: curves there have
  * radii of a quarter of a cell, more or less. */
 #define CHORD 0.01
@@ -43,8 +45,6 @@ static int32_t first_column(const raster *r, int32_t j, int32_t *count) {
 
 typedef struct taking {
     samples *out;
-    const iso_lattice *lattice;
-    iso_lattice_plane plane;
     double *distance, *half; /* [columns] */
 } taking;
 
@@ -55,8 +55,8 @@ static float limited(double x) {
 static void take_row(taking *t, int32_t j, int32_t first, int32_t count) {
     samples *s = t->out;
     int32_t columns = s->raster.columns;
-    float *distance = s->distance + (int64_t)j * columns;
-    float *half = s->half + (int64_t)j * columns;
+    float *distance = s->distance + (int64_t)(j % s->period) * columns;
+    float *half = s->half + (int64_t)(j % s->period) * columns;
     if (!s->repeats)
         for (int32_t i = 0; i < columns; i++) {
             distance[i] = (float)SAMPLES_FAR;
@@ -64,7 +64,7 @@ static void take_row(taking *t, int32_t j, int32_t first, int32_t count) {
         }
     if (count == 0)
         return;
-    lattice_sample_row(t->distance, t->half, t->lattice, &t->plane, j, first, count);
+    lattice_sample_row(t->distance, t->half, s->lattice, &s->plane, j, first, count);
     for (int32_t i = 0; i < count; i++) {
         distance[first + i] = limited(t->distance[i]);
         half[first + i] = limited(t->half[i]);
@@ -99,12 +99,15 @@ iso_status samples_take(samples *out, const iso_region *region, const iso_lattic
     int64_t kept = (int64_t)out->period * r->columns;
     ISO_TRY(ISO_PUSH(out->distance, scratch, kept));
     ISO_TRY(ISO_PUSH(out->half, scratch, kept));
+    out->lattice = slice->lattice;
+    out->plane = (iso_lattice_plane){
+        {(r->x - slice->shift.x) / ISO_UNITS_PER_MM, (r->y - slice->shift.y) / ISO_UNITS_PER_MM},
+        step,
+        slice->z,
+        r->columns,
+        r->rows};
     iso_arena_mark mark = iso_arena_get_mark(scratch);
-    taking t = {out, slice->lattice, {.step = step, .z = slice->z}, NULL, NULL};
-    t.plane.origin.x = (r->x - slice->shift.x) / ISO_UNITS_PER_MM;
-    t.plane.origin.y = (r->y - slice->shift.y) / ISO_UNITS_PER_MM;
-    t.plane.columns = r->columns;
-    t.plane.rows = r->rows;
+    taking t = {out, NULL, NULL};
     ISO_TRY(ISO_PUSH(t.distance, scratch, r->columns));
     ISO_TRY(ISO_PUSH(t.half, scratch, r->columns));
     for (int32_t j = 0; j < out->period; j++) {
@@ -149,4 +152,29 @@ double samples_share(const samples *s, int32_t i, int32_t j) {
         share = share > 0 ? share : 0;
     }
     return share;
+}
+
+iso_status samples_period_share(double *share, const samples *s, iso_arena *scratch) {
+    samples fine = {.has_sides = s->has_sides, .thin = SAMPLES_FAR, .thick = -SAMPLES_FAR};
+    int32_t squares = s->period * FINER;
+    taking t = {&fine, NULL, NULL};
+    double sum = 0;
+    fine.lattice = s->lattice;
+    fine.plane = s->plane;
+    fine.plane.step /= FINER;
+    fine.raster.columns = fine.plane.columns = fine.plane.rows = squares + 1;
+    fine.period = 2; /* rows in turn */
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    ISO_TRY(ISO_PUSH(fine.distance, scratch, 2 * ((int64_t)squares + 1)));
+    ISO_TRY(ISO_PUSH(fine.half, scratch, 2 * ((int64_t)squares + 1)));
+    ISO_TRY(ISO_PUSH(t.distance, scratch, squares + 1));
+    ISO_TRY(ISO_PUSH(t.half, scratch, squares + 1));
+    for (int32_t j = 0; j <= squares; j++) {
+        take_row(&t, j, 0, squares + 1);
+        for (int32_t i = 0; i < squares && j > 0; i++)
+            sum += samples_share(&fine, i, j - 1);
+    }
+    iso_arena_pop(scratch, mark);
+    *share = sum / ((double)squares * squares);
+    return ISO_OK;
 }

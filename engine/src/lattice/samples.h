@@ -12,7 +12,9 @@ typedef struct samples {
     float *distance;    /* [period columns] mm, sides' sign kept; far away outside the region */
     float *half;        /* [period columns] mm; finite */
     double thin, thick; /* least and greatest half where the region is and there is material */
-    int32_t repeats;    /* along rows too: the lattice is the same in every period */
+    const iso_lattice *lattice;
+    iso_lattice_plane plane;
+    int32_t repeats; /* along rows too: the lattice is the same in every period */
 } samples;
 
 /* Mm for what is void or solid altogether, and for what isn't asked. */
@@ -32,5 +34,8 @@ static inline const float *samples_half(const samples *s, int32_t j) {
 
 /* What part of a square of the grid is material, 0 to 1. */
 double samples_share(const samples *s, int32_t i, int32_t j);
+
+/* Of one period, sampled more finely than the lines need it; `repeats` must be so. */
+iso_status samples_period_share(double *share, const samples *s, iso_arena *scratch) ISO_MUST_CHECK;
 
 #endif

@@ -19,8 +19,6 @@
  * tell its own. Sections are exact. */
 #define WIDTH_TOLD 0.2
 
-enum { LINES_MOST = 8 }; /* side by side */
-
 sheet_bead sheet_bead_of(const iso_fill_options *fill) {
     const double corners = 0.21460183660255172; /* 1 - pi / 4 */
     double w = fill->width, rest = w * w - 4 * corners * fill->area;
@@ -39,9 +37,10 @@ static double limit_of(const sheet_bead *bead, int lines) {
     return lines * THICKEST * bead->usual / (2 * ISO_UNITS_PER_MM);
 }
 
-double sheet_limit(const sheet_bead *bead) {
-    return limit_of(bead, LINES_MOST);
-}
+/* Zones whose lines would hold less or more than their section by such a factor aren't for lines.
+ */
+#define SCALE_LEAST 0.75
+#define SCALE_MOST 1.15
 
 typedef struct drawing {
     const samples *samples;
@@ -56,34 +55,59 @@ typedef struct drawing {
     double scale;          /* of widths, so that volumes come out true */
 } drawing;
 
+static double thin_limit(const drawing *d) {
+    return d->lines == 1 ? 0 : limit_of(d->bead, d->lines - 1);
+}
+
 /* ---- samples to lines ---- */
 
-/* value: 0 on the line. width: that of the strip of section along it, in units, before any limits;
- * below 0 where there is no such line. */
+/* How far from a line with slope g > 0 and bend c across it its strip ends, where the distance is h
+ * more: or where it turns back, half way to another line. */
+static double reach_of(double g, double c, double h) {
+    double rest = g * g + 2 * c * h;
+    return rest >= 0 ? 2 * h / (g + sqrt(rest)) : -g / c;
+}
+
+/* How wide the strip is, in steps, that holds all within h of the distance at column i, as far as
+ * it is nearer to this line than to another: by the distance's slope and how that changes across
+ * the line and along it. Lines cross where the slope is 0. `at` are the rows below, at hand and
+ * above. */
+static double strip_width(const float *const at[3], const int32_t column[3], double h) {
+    int32_t w = column[0], i = column[1], e = column[2];
+    double gx = ((double)at[1][e] - at[1][w]) / 2, gy = ((double)at[2][i] - at[0][i]) / 2;
+    double xx = (double)at[1][e] + at[1][w] - 2 * (double)at[1][i];
+    double yy = (double)at[2][i] + at[0][i] - 2 * (double)at[1][i];
+    double xy = (((double)at[2][e] - at[2][w]) - ((double)at[0][e] - at[0][w])) / 4;
+    double square = gx * gx + gy * gy, g = sqrt(square);
+    if (!(square > 1e-12 * h * h))
+        return HUGE_VAL;
+    double c = (gx * gx * xx + 2 * gx * gy * xy + gy * gy * yy) / square;
+    double twist = fabs((gx * gx - gy * gy) * xy + gx * gy * (yy - xx)) / square;
+    double left = reach_of(g, c, h), right = reach_of(g, -c, h);
+    return (left * twist < g ? left : g / twist) + (right * twist < g ? right : g / twist);
+}
+
+/* value: 0 on the line. width: that of the strip of section along it, in units, before any limits
+ * of the nozzle's; below 0 where there is no such line. */
 static void fill_row(const drawing *d, int32_t j, double *value, double *width) {
     const samples *s = d->samples;
     int32_t columns = s->raster.columns, last = columns - 1;
-    const float *at = samples_distance(s, j), *half = samples_half(s, j);
-    const float *below = j > 0 || s->repeats ? samples_distance(s, j + s->period - 1) : at;
-    const float *above = j + 1 < s->raster.rows || s->repeats ? samples_distance(s, j + 1) : at;
-    int32_t first = s->repeats ? s->period - 1 : 0; /* before column 0 */
+    bool first = j == 0 && !s->repeats, end = j + 1 == s->raster.rows && !s->repeats;
+    const float *const at[3] = {samples_distance(s, first ? j : j + s->period - 1),
+                                samples_distance(s, j), samples_distance(s, end ? j : j + 1)};
+    const float *half = samples_half(s, j);
+    int32_t before = s->repeats ? s->period - 1 : 0; /* column 0 */
     double place = (2 * d->line - d->lines + 1) / (double)d->lines;
-    double thin = d->lines == 1 ? 0 : limit_of(d->bead, d->lines - 1);
-    double thick = limit_of(d->bead, d->lines);
-    double most = d->bead->most * d->lines;
-    /* 2 half / |gradient|, its difference over two steps; per line */
-    double strip = 2 * 2 * s->raster.step;
+    double thin = thin_limit(d), thick = limit_of(d->bead, d->lines);
     for (int32_t i = 0; i < columns; i++) {
         double h = half[i];
-        value[i] = at[i] - place * h;
-        if (!(h > thin && h <= thick)) {
-            width[i] = -1;
+        value[i] = at[1][i] - place * h;
+        width[i] = -1;
+        if (!(h > thin && h <= thick))
             continue;
-        }
-        double x = (double)at[i < last ? i + 1 : i] - at[i > 0 ? i - 1 : first];
-        double y = (double)above[i] - below[i], steep = sqrt(x * x + y * y);
-        double wide = strip * h;
-        width[i] = wide < most * steep ? wide / (steep * d->lines) : d->bead->most;
+        int32_t column[3] = {i > 0 ? i - 1 : before, i, i < last ? i + 1 : i};
+        double wide = strip_width(at, column, h / d->lines) * s->raster.step;
+        width[i] = wide < d->bead->most ? wide : d->bead->most;
     }
 }
 
@@ -311,8 +335,9 @@ typedef struct share { /* in squares of the grid */
 
 static double section_of(const drawing *d, int32_t i, int32_t j) {
     double half = samples_half(d->samples, j)[i];
-    double thin = d->lines == 1 ? 0 : limit_of(d->bead, d->lines - 1);
-    return half > thin && half <= limit_of(d->bead, d->lines) ? samples_share(d->samples, i, j) : 0;
+    return half > thin_limit(d) && half <= limit_of(d->bead, d->lines)
+               ? samples_share(d->samples, i, j)
+               : 0;
 }
 
 /* Of one period, whatever the region. */
@@ -327,9 +352,8 @@ static iso_status measure_period(share *sum, drawing *d) {
         sum->drawn += drawn_area(d, &c, true);
         iso_arena_pop(d->scratch, mark);
     }
-    for (int32_t j = 0; j + 1 < nodes; j++)
-        for (int32_t i = 0; i + 1 < nodes; i++)
-            sum->section += section_of(d, i, j);
+    ISO_TRY(samples_period_share(&sum->section, d->samples, d->scratch));
+    sum->section *= (double)d->samples->period * d->samples->period;
     return ISO_OK;
 }
 
@@ -367,8 +391,8 @@ static iso_status draw_line(drawing *d, contour *c) {
 }
 
 /* Where so many lines run side by side. */
-static iso_status draw_zone(drawing *d) {
-    contour c[LINES_MOST];
+static iso_status draw_zone(drawing *d, bool *suits) {
+    contour c[SHEET_LINES];
     share sum = {0};
     if (d->samples->repeats)
         ISO_TRY(measure_period(&sum, d));
@@ -380,28 +404,39 @@ static iso_status draw_zone(drawing *d) {
     if (!d->samples->repeats)
         measure_squares(&sum, d);
     d->scale = sum.drawn > 0 ? sum.section / sum.drawn : 1;
-    d->scale = d->scale < 0.8 ? 0.8 : d->scale < 1.25 ? d->scale : 1.25;
+    *suits = d->scale >= SCALE_LEAST && d->scale <= SCALE_MOST;
+    if (!*suits)
+        return ISO_OK;
     for (int line = 0; line < d->lines; line++)
         ISO_TRY(draw_line(d, &c[line]));
     return ISO_OK;
 }
 
-iso_status sheet_draw(iso_paths *out, const iso_region *region, const samples *taken,
-                      const iso_fill_options *fill, iso_arena *scratch) {
+double sheet_limit(const sheet_bead *bead, int lines) {
+    return lines > 0 ? limit_of(bead, lines) : 0;
+}
+
+iso_status sheet_draw(iso_paths *out, uint32_t *left, const iso_region *region,
+                      const samples *taken, const iso_fill_options *fill, iso_arena *scratch) {
     sheet_bead bead = sheet_bead_of(fill);
     iso_clip clip;
     iso_weave weave;
     drawing d = {taken, &bead, fill, out, &clip, scratch, .scale = 1};
     int64_t rows = taken->repeats ? taken->period : 2;
+    *left = 0;
     ISO_TRY(iso_clip_begin(&clip, region, 0, (iso_point){0, 0}, scratch));
     clip.has_beads = 1;
     ISO_TRY(ISO_PUSH(d.value, scratch, rows * taken->raster.columns));
     ISO_TRY(ISO_PUSH(d.width, scratch, rows * taken->raster.columns));
     ISO_TRY(ISO_PUSH(d.ready, scratch, rows));
-    for (d.lines = 1; d.lines <= LINES_MOST; d.lines++)
-        if (taken->thick > (d.lines == 1 ? 0 : limit_of(&bead, d.lines - 1)) &&
-            taken->thin <= limit_of(&bead, d.lines))
-            ISO_TRY(draw_zone(&d));
+    for (d.lines = 1; d.lines <= SHEET_LINES; d.lines++) {
+        bool suits = true;
+        if (taken->thick > thin_limit(&d) && taken->thin <= limit_of(&bead, d.lines))
+            ISO_TRY(draw_zone(&d, &suits));
+        *left |= (uint32_t)!suits << d.lines;
+    }
+    if (taken->thick > limit_of(&bead, SHEET_LINES))
+        *left |= (uint32_t)1 << (SHEET_LINES + 1);
     ISO_TRY(iso_clip_end(&weave, &clip));
     return iso_weave_draw(out, &weave, fill, scratch);
 }

@@ -15,12 +15,16 @@ typedef struct sheet_bead {
 
 sheet_bead sheet_bead_of(const iso_fill_options *fill);
 
-/* The half thickness in mm up to which sheets are drawn as lines: one, or several side by side. */
-double sheet_limit(const sheet_bead *bead);
+enum { SHEET_LINES = 8 }; /* side by side at most */
 
-/* Append the lines of all that isn't thicker than the limit. Clipped to `region`, which the samples
- * were taken for; links as in iso_weave_draw. */
-iso_status sheet_draw(iso_paths *out, const iso_region *region, const samples *taken,
-                      const iso_fill_options *fill, iso_arena *scratch) ISO_MUST_CHECK;
+/* The half thickness in mm up to which a sheet is drawn as so many lines; beyond that as more. */
+double sheet_limit(const sheet_bead *bead, int lines);
+
+/* Append the lines of sheets. Bit n of `left` tells that what takes n lines is left for other beads
+ * to fill, SHEET_LINES + 1 what takes more. Clipped to `region`, which the samples were taken for;
+ * links as in iso_weave_draw. */
+iso_status sheet_draw(iso_paths *out, uint32_t *left, const iso_region *region,
+                      const samples *taken, const iso_fill_options *fill,
+                      iso_arena *scratch) ISO_MUST_CHECK;
 
 #endif

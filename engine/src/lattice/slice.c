@@ -12,24 +12,34 @@
  * as on it. */
 enum { THINNING = 50, REACH = 200 };
 
-/* One side of the material: where `side` distance <= half; and only where half is above `thicker`
- * mm. */
+/* Material by how thick it is, in mm of half a sheet: above `thin`, to `thick`. */
+typedef struct iso_share {
+    double thin, thick;
+} iso_share;
+static const iso_share everything = {-SAMPLES_FAR, SAMPLES_FAR};
+
 typedef struct siding {
     const samples *samples;
-    double side, thicker;
+    iso_share share;
     double *value; /* two rows in turn */
 } siding;
 
-/* Outside the region there is none, so every contour closes, in squares that are outside. */
+/* Above 0 where a place isn't of the share. */
+static double off_share(const iso_share *share, double half) {
+    double thin = share->thin - half, thick = half - share->thick;
+    return thin > thick ? thin : thick;
+}
+
+/* Where the distance is at most half. Outside the region there is nothing, so every contour closes,
+ * in squares that are outside. */
 static void row(contour_row *out, void *context, int32_t j) {
     const siding *s = context;
     const raster *r = &s->samples->raster;
     const float *distance = samples_distance(s->samples, j), *half = samples_half(s->samples, j);
     double *value = s->value + (int64_t)(j & 1) * r->columns;
     for (int32_t i = 0; i < r->columns; i++) {
-        double at = s->side * distance[i] - half[i];
-        double thin = s->thicker - half[i];
-        value[i] = !raster_meets(r, i, j) ? SAMPLES_FAR : thin > at ? thin : at;
+        double at = (double)distance[i] - half[i], off = off_share(&s->share, half[i]);
+        value[i] = !raster_meets(r, i, j) ? SAMPLES_FAR : off > at ? off : at;
     }
     *out = (contour_row){value, NULL};
 }
@@ -41,8 +51,8 @@ static void far_row(contour_row *out, void *context, int32_t j) {
     const float *distance = samples_distance(s->samples, j), *half = samples_half(s->samples, j);
     double *value = s->value + (int64_t)(j & 1) * r->columns;
     for (int32_t i = 0; i < r->columns; i++) {
-        double at = (double)distance[i] + half[i], thin = s->thicker - half[i];
-        value[i] = !raster_meets(r, i, j) || half[i] < 0 ? SAMPLES_FAR : thin > at ? thin : at;
+        double at = (double)distance[i] + half[i], off = off_share(&s->share, half[i]);
+        value[i] = !raster_meets(r, i, j) || half[i] < 0 ? SAMPLES_FAR : off > at ? off : at;
     }
     *out = (contour_row){value, NULL};
 }
@@ -85,18 +95,26 @@ static iso_status add_contours(iso_region *raw, siding *s, bool far, iso_arena *
     return ISO_OK;
 }
 
-/* The section where the material's half thickness is above `thicker` mm, within the area. */
+/* A layer that is being filled. */
+typedef struct filling {
+    iso_paths *out;
+    const iso_lattice_slice *slice;
+    const iso_fill_options *fill;
+    iso_arena *scratch;
+    iso_planar_scratch *planar;
+} filling;
+
 static iso_status section_of(iso_region *out, const iso_region *area, const samples *taken,
-                             double thicker, iso_arena *scratch, iso_planar_scratch *planar) {
-    siding s = {taken, 1, thicker, NULL};
+                             const iso_share *share, const filling *f) {
+    siding s = {taken, *share, NULL};
     iso_region raw = {0}, clean = {0};
-    iso_status status = add_contours(&raw, &s, false, scratch);
+    iso_status status = add_contours(&raw, &s, false, f->scratch);
     if (status == ISO_OK && taken->has_sides)
-        status = add_contours(&raw, &s, true, scratch);
+        status = add_contours(&raw, &s, true, f->scratch);
     if (status == ISO_OK)
-        status = iso_region_simplify(&clean, &raw, THINNING, planar);
+        status = iso_region_simplify(&clean, &raw, THINNING, f->planar);
     if (status == ISO_OK)
-        status = iso_boolean(out, ISO_INTERSECTION, &clean, area, planar);
+        status = iso_boolean(out, ISO_INTERSECTION, &clean, area, f->planar);
     iso_region_free(&raw);
     iso_region_free(&clean);
     return status;
@@ -105,63 +123,72 @@ static iso_status section_of(iso_region *out, const iso_region *area, const samp
 iso_status lattice_section(iso_region *out, const iso_region *area, const iso_lattice_slice *slice,
                            iso_arena *scratch, iso_planar_scratch *planar) {
     samples taken;
+    filling f = {NULL, slice, NULL, scratch, planar};
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     iso_region_clear(out);
     if (area->count == 0)
         return ISO_OK;
     iso_status status = samples_take(&taken, area, slice, REACH, scratch);
     if (status == ISO_OK)
-        status = section_of(out, area, &taken, -SAMPLES_FAR, scratch, planar);
+        status = section_of(out, area, &taken, &everything, &f);
     iso_arena_pop(scratch, mark);
     return status;
 }
 
-/* Everything that isn't drawn as lines. The beads' outlines may reach to the edge of what is to be
- * filled, the margin further out than their middles. */
-static iso_status fill_bulk(iso_paths *out, const iso_region *region, const samples *taken,
-                            double thicker, const iso_fill_options *fill, iso_arena *scratch,
-                            iso_planar_scratch *planar) {
+static iso_status fill_share(const filling *f, const iso_region *area, const samples *taken,
+                             const iso_share *share) {
     iso_region section = {0};
-    iso_status status = section_of(&section, region, taken, thicker, scratch, planar);
+    iso_status status = section_of(&section, area, taken, share, f);
     if (status == ISO_OK)
-        status = bulk_draw(out, &section, fill, scratch, planar);
+        status = bulk_draw(f->out, &section, f->fill, f->scratch, f->planar);
     iso_region_free(&section);
     return status;
 }
 
-static iso_status fill_all(iso_paths *out, const iso_region *region, const iso_lattice_slice *slice,
-                           const iso_fill_options *fill, iso_arena *scratch,
-                           iso_planar_scratch *planar) {
+/* What isn't drawn as lines along its middle. Beads may reach to the edge of what is to be filled,
+ * the margin further out than their middles. */
+static iso_status fill_bulk(const filling *f, const iso_region *region, uint32_t left) {
     samples taken;
-    sheet_bead bead = sheet_bead_of(fill);
+    sheet_bead bead = sheet_bead_of(f->fill);
     iso_region area = {0};
-    double limit = lattice_cell(slice->lattice)->has_sides ? sheet_limit(&bead) : -SAMPLES_FAR;
-    if (limit > 0) {
-        ISO_TRY(samples_take(&taken, region, slice, bead.tolerance + REACH, scratch));
-        if (taken.thin <= limit)
-            ISO_TRY(sheet_draw(out, region, &taken, fill, scratch));
-        if (taken.thick <= limit)
-            return ISO_OK;
-    }
-    iso_offset_options grow = iso_offset_defaults(fill->margin);
-    iso_status status = iso_offset(&area, region, &grow, planar);
+    iso_offset_options grow = iso_offset_defaults(f->fill->margin);
+    iso_status status = iso_offset(&area, region, &grow, f->planar);
     if (status == ISO_OK)
-        status = samples_take(&taken, &area, slice, REACH, scratch);
-    if (status == ISO_OK)
-        status = fill_bulk(out, &area, &taken, limit, fill, scratch, planar);
+        status = samples_take(&taken, &area, f->slice, REACH, f->scratch);
+    if (status == ISO_OK && !taken.has_sides)
+        status = fill_share(f, &area, &taken, &everything);
+    else
+        for (int lines = 1; status == ISO_OK && lines <= SHEET_LINES + 1; lines++) {
+            iso_share share = {sheet_limit(&bead, lines - 1),
+                               lines > SHEET_LINES ? SAMPLES_FAR : sheet_limit(&bead, lines)};
+            if (left >> lines & 1)
+                status = fill_share(f, &area, &taken, &share);
+        }
     iso_region_free(&area);
     return status;
+}
+
+static iso_status fill_all(const filling *f, const iso_region *region) {
+    samples taken;
+    uint32_t left = 0;
+    sheet_bead bead = sheet_bead_of(f->fill);
+    if (!lattice_cell(f->slice->lattice)->has_sides)
+        return fill_bulk(f, region, left);
+    ISO_TRY(samples_take(&taken, region, f->slice, bead.tolerance + REACH, f->scratch));
+    ISO_TRY(sheet_draw(f->out, &left, region, &taken, f->fill, f->scratch));
+    return left ? fill_bulk(f, region, left) : ISO_OK;
 }
 
 iso_status lattice_fill(iso_paths *out, const iso_region *region, const iso_lattice_slice *slice,
                         const iso_fill_options *fill, iso_arena *scratch,
                         iso_planar_scratch *planar) {
+    filling f = {out, slice, fill, scratch, planar};
     int32_t count = out->count, vertex_count = out->vertex_count;
     iso_arena_mark mark = iso_arena_get_mark(scratch);
     ISO_TRY(iso_fill_options_validate(fill));
     if (region->count == 0)
         return ISO_OK;
-    iso_status status = fill_all(out, region, slice, fill, scratch, planar);
+    iso_status status = fill_all(&f, region);
     iso_arena_pop(scratch, mark);
     if (status != ISO_OK) {
         out->count = count;
