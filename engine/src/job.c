@@ -68,6 +68,8 @@ static iso_status slice_objects(iso_job *job) {
     memset(job->next, 0, (size_t)count * sizeof *job->next);
     for (int32_t i = 0; i < count; i++) {
         iso_stack *stack = &job->stack[i];
+        stack->report = report;
+        stack->cut = count == 1 ? job->hooks->lattice_cut : NULL;
         ISO_TRY(stack_slice(stack, &job->plate.objects.object[i], job->options,
                             job->plate.modifiers.count > 0 ? &job->plate.modifiers : NULL,
                             &job->crew));

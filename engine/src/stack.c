@@ -5,6 +5,7 @@
 
 #include "config/settings_objects.h"
 #include "planar/section.h"
+#include "solid/check.h"
 
 enum { LAYERS_PER_THREAD = 8 };
 
@@ -61,7 +62,7 @@ static iso_status make_levels(iso_stack *stack, const iso_object *object) {
                     object->name, object->max.z, iso_options_first_height(options));
 }
 
-static iso_status slice_meshes(iso_stack *stack, iso_object *object) {
+static iso_status slice_meshes(iso_stack *stack, iso_object *object, bool keep) {
     double height = stack->levels.top[stack->levels.count - 1];
     ISO_TRY(ISO_ALLOCATE(stack->slices, object->mesh_count));
     memset(stack->slices, 0, (size_t)object->mesh_count * sizeof *stack->slices);
@@ -72,8 +73,28 @@ static iso_status slice_meshes(iso_stack *stack, iso_object *object) {
         stack->mesh_volume += iso_mesh_volume_between(mesh, 0, height);
         stack->projected += projected_area(mesh);
         stack->slice_bytes += slices_bytes(&stack->slices[i]);
-        iso_mesh_free(mesh);
+        if (!keep)
+            iso_mesh_free(mesh);
     }
+    return ISO_OK;
+}
+
+/* Meshes go as soon as nothing asks for them any more. */
+static iso_status slice_object(iso_stack *stack, iso_object *object) {
+    iso_check_solid mode = (iso_check_solid)stack->options->check_solid;
+    bool checked = solid_check_is_due(object->mesh, object->mesh_count, mode);
+    ISO_TRY(slice_meshes(stack, object, checked));
+    if (!checked)
+        return ISO_OK;
+    solid_subject subject = {.name = object->name,
+                             .mesh = object->mesh,
+                             .slices = stack->slices,
+                             .count = object->mesh_count,
+                             .levels = &stack->levels,
+                             .mode = mode};
+    ISO_TRY(solid_check(stack->report, &subject, stack->crew->pool));
+    for (int32_t i = 0; i < object->mesh_count; i++)
+        iso_mesh_free(&object->mesh[i]);
     return ISO_OK;
 }
 
@@ -117,6 +138,7 @@ static iso_status make_lattices(iso_stack *stack, const iso_object *object) {
     for (int32_t k = 0; k < lattices(stack); k++) {
         char percent[32];
         iso_lattice_options options = settings_of_lattice(options_at(stack, k), percent);
+        options.cut = stack->cut;
         if (options.pattern >= 0)
             ISO_TRY(lattice_new(&stack->lattice[k], &options, object->mesh, object->mesh_count));
     }
@@ -132,7 +154,7 @@ iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *
     stack->block = LAYERS_PER_THREAD * crew->count;
     ISO_TRY(make_levels(stack, object));
     ISO_TRY(make_lattices(stack, object));
-    ISO_TRY(slice_meshes(stack, object));
+    ISO_TRY(slice_object(stack, object));
     ISO_TRY(verify_volume(stack, object));
     if (modifiers)
         ISO_TRY(modifiers_slice(modifiers, &stack->levels));

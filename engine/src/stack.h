@@ -22,8 +22,10 @@ typedef struct iso_crew {
 iso_status crew_new(iso_crew *crew, int32_t threads) ISO_MUST_CHECK;
 void crew_free(iso_crew *crew);
 
-/* Zero-initialise. */
+/* Zero-initialise but for what is said in the beginning. */
 typedef struct iso_stack {
+    iso_report *report;         /* of what the check of the slices finds */
+    const iso_lattice_cut *cut; /* taken out of every lattice; or NULL */
     const iso_options *options;
     const iso_modifiers *modifiers; /* or NULL */
     const iso_crew *crew;

@@ -13,6 +13,9 @@ typedef struct iso_job_hooks {
     /* Called now and then on the calling thread, done from 0 to 1; may be NULL. */
     void (*progress)(void *payload, double done, const char *stage);
     void *payload;
+    const iso_lattice_cut
+        *lattice_cut; /* void all the same, in lattices of a single object; or NULL
+                       */
 } iso_job_hooks;
 
 /* Slice the models into one print and write its G-code to `output` ("-": standard output), whole or
