@@ -152,8 +152,11 @@ iso_status volume_from_surface(iso_volume **volume, const iso_volume_surface *su
 
 // A callback's values
 
-/* Cut by the plan's box: the larger of the value and the distance to the box, which is exact beside
- * its faces and too small beyond its edges. */
+/* Voxel middles this far beyond the box, in voxels, are still on its face: rounding. */
+#define ON_FACE 1e-6
+
+/* The larger of the value and the distance to the plan's box, which is exact beside its faces and
+ * too small beyond its edges. */
 static void cut_by_box(float *value, const iso_volume_plan *plan, iso_vec3 corner) {
     const double low[3] = {plan->min.x, plan->min.y, plan->min.z};
     const double high[3] = {plan->max.x, plan->max.y, plan->max.z};
@@ -161,8 +164,9 @@ static void cut_by_box(float *value, const iso_volume_plan *plan, iso_vec3 corne
     double beyond[3][VOLUME_EDGE];
     for (int axis = 0; axis < 3; axis++)
         for (int i = 0; i < VOLUME_EDGE; i++) {
-            double at = first[axis] + plan->voxel * i;
-            beyond[axis][i] = at - high[axis] > low[axis] - at ? at - high[axis] : low[axis] - at;
+            double at = first[axis] + plan->voxel * i, below = low[axis] - at;
+            double above = at - high[axis], most = above > below ? above : below;
+            beyond[axis][i] = most > 0 && most < ON_FACE * plan->voxel ? 0 : most;
         }
     for (int z = 0; z < VOLUME_EDGE; z++)
         for (int y = 0; y < VOLUME_EDGE; y++) {
@@ -176,49 +180,42 @@ static void cut_by_box(float *value, const iso_volume_plan *plan, iso_vec3 corne
         }
 }
 
+/* Blocks from 0 on along each axis; only those near the box's faces are cut. */
 typedef struct block_range {
-    int32_t first[3], last[3]; /* blocks that the box's voxels lie in */
-    int32_t clear[3][2];       /* from, to: these are too deep in the box to be cut */
+    int32_t count[3];
+    int32_t clear; /* as many at each end are not clear of the faces */
 } block_range;
 
-static int32_t floor_block(double voxels) {
-    double blocks = voxels / VOLUME_EDGE;
-    int32_t truncated = (int32_t)blocks;
-    return truncated - (blocks < truncated);
-}
-
 static void find_range(block_range *range, const iso_volume_plan *plan) {
-    const double low[3] = {plan->min.x, plan->min.y, plan->min.z};
-    const double high[3] = {plan->max.x, plan->max.y, plan->max.z};
-    double margin = plan->kind == ISO_VOLUME_DISTANCE ? BAND : 0;
-    for (int i = 0; i < 3; i++) {
-        double from = low[i] / plan->voxel, to = high[i] / plan->voxel;
-        range->first[i] = floor_block(from - margin);
-        range->last[i] = floor_block(to + margin);
-        range->clear[i][0] = floor_block(from + margin + 1) + 1;
-        range->clear[i][1] = floor_block(to - margin - 1) - 1;
-    }
+    const double span[3] = {plan->max.x - plan->min.x, plan->max.y - plan->min.y,
+                            plan->max.z - plan->min.z};
+    for (int i = 0; i < 3; i++)
+        range->count[i] = (int32_t)((span[i] / plan->voxel + ON_FACE) / VOLUME_EDGE) + 1;
+    /* the last block may have its face before its first voxel's band is over */
+    range->clear = plan->kind == ISO_VOLUME_DISTANCE ? 2 : 1;
 }
 
-static iso_status build_block(const iso_volume *volume, const iso_volume_plan *plan,
+static iso_status build_block(iso_volume *volume, const iso_volume_plan *plan,
                               const block_range *range, const int32_t block[3]) {
     float value[VOLUME_CELLS];
     const int32_t first[3] = {VOLUME_EDGE * block[0], VOLUME_EDGE * block[1],
                               VOLUME_EDGE * block[2]};
-    const iso_vec3 corner = {plan->voxel * first[0], plan->voxel * first[1],
-                             plan->voxel * first[2]};
+    const iso_vec3 corner = {plan->min.x + plan->voxel * first[0],
+                             plan->min.y + plan->voxel * first[1],
+                             plan->min.z + plan->voxel * first[2]};
     ISO_TRY(plan->fill(plan->payload, value, corner));
     int clear = 1;
     for (int i = 0; i < 3; i++)
-        clear &= block[i] >= range->clear[i][0] && block[i] <= range->clear[i][1];
+        clear &= block[i] >= range->clear && block[i] < range->count[i] - range->clear;
     if (!clear)
         cut_by_box(value, plan, corner);
-    return put_block((void *)volume, first, value);
+    return put_block(volume, first, value);
 }
 
 static iso_status fill_from_plan(iso_volume *volume, const iso_volume_plan *plan) {
     float band = (float)(BAND * plan->voxel);
-    const volume_form form = {.voxel = plan->voxel,
+    const volume_form form = {.origin = {plan->min.x, plan->min.y, plan->min.z},
+                              .voxel = plan->voxel,
                               .outside = band,
                               .inside = -band,
                               .is_mask = plan->kind == ISO_VOLUME_SOLID,
@@ -228,9 +225,9 @@ static iso_status fill_from_plan(iso_volume *volume, const iso_volume_plan *plan
     block_range range;
     find_range(&range, plan);
     int32_t block[3];
-    for (block[2] = range.first[2]; block[2] <= range.last[2]; block[2]++)
-        for (block[1] = range.first[1]; block[1] <= range.last[1]; block[1]++)
-            for (block[0] = range.first[0]; block[0] <= range.last[0]; block[0]++)
+    for (block[2] = 0; block[2] < range.count[2]; block[2]++)
+        for (block[1] = 0; block[1] < range.count[1]; block[1]++)
+            for (block[0] = 0; block[0] < range.count[0]; block[0]++)
                 ISO_TRY(build_block(volume, plan, &range, block));
     return finish(volume);
 }

@@ -103,7 +103,12 @@ iso_status grid_new(volume_grid **result, const volume_form *form, char *message
             if (form->is_distance)
                 base->setGridClass(openvdb::GRID_LEVEL_SET);
         }
-        base->setTransform(openvdb::math::Transform::createLinearTransform(form->voxel));
+        const openvdb::math::Transform::Ptr transform =
+            openvdb::math::Transform::createLinearTransform(form->voxel);
+        for (int i = 0; i < 3; i++)
+            grid->origin[i] = form->origin[i];
+        transform->postTranslate(openvdb::Vec3d(form->origin));
+        base->setTransform(transform);
         base->setName(form->name && *form->name ? form->name : "solid");
         *result = grid.release();
     });
@@ -616,25 +621,26 @@ iso_status grid_sample(double *value, const volume_grid *grid, const double *poi
 
 // Surface
 
-void put_triangle(float *corner, const openvdb::Vec3s &a, const openvdb::Vec3s &b,
-                  const openvdb::Vec3s &c) {
+/* Where values are `level` exactly, faces shrink to edges: such a triangle is left out, and those
+ * beside it fit together without it. */
+float *put_triangle(float *corner, const openvdb::Vec3s &a, const openvdb::Vec3s &b,
+                    const openvdb::Vec3s &c) {
+    if (a == b || b == c || c == a)
+        return corner;
     for (int i = 0; i < 3; i++) {
         corner[i] = a[i];
         corner[3 + i] = b[i];
         corner[6 + i] = c[i];
     }
+    return corner + 9;
 }
 
 /* OpenVDB's faces turn clockwise, seen from outside. Quads are cut along the shorter diagonal. */
-void put_quad(float *corner, const std::vector<openvdb::Vec3s> &points, const openvdb::Vec4I &q) {
+float *put_quad(float *corner, const std::vector<openvdb::Vec3s> &points, const openvdb::Vec4I &q) {
     const openvdb::Vec3s &a = points[q[3]], &b = points[q[2]], &c = points[q[1]], &d = points[q[0]];
-    if ((c - a).lengthSqr() <= (d - b).lengthSqr()) {
-        put_triangle(corner, a, b, c);
-        put_triangle(corner + 9, a, c, d);
-    } else {
-        put_triangle(corner, a, b, d);
-        put_triangle(corner + 9, b, c, d);
-    }
+    if ((c - a).lengthSqr() <= (d - b).lengthSqr())
+        return put_triangle(put_triangle(corner, a, b, c), a, c, d);
+    return put_triangle(put_triangle(corner, a, b, d), b, c, d);
 }
 
 iso_status grid_surface(volume_triangles *triangles, const volume_grid *grid, double level,
@@ -657,13 +663,13 @@ iso_status grid_surface(volume_triangles *triangles, const volume_grid *grid, do
         float *corner = static_cast<float *>(triangles->allocate(count * 9 * sizeof(float)));
         if (!corner)
             throw std::bad_alloc();
-        for (size_t i = 0; i < quads.size(); i++)
-            put_quad(corner + 18 * i, points, quads[i]);
-        float *rest = corner + 18 * quads.size();
-        for (size_t i = 0; i < left.size(); i++)
-            put_triangle(rest + 9 * i, points[left[i][2]], points[left[i][1]], points[left[i][0]]);
+        float *end = corner;
+        for (const openvdb::Vec4I &quad : quads)
+            end = put_quad(end, points, quad);
+        for (const openvdb::Vec3I &t : left)
+            end = put_triangle(end, points[t[2]], points[t[1]], points[t[0]]);
         triangles->corner = corner;
-        triangles->count = static_cast<int64_t>(count);
+        triangles->count = (end - corner) / 9;
     });
 }
 

@@ -17,7 +17,7 @@ typedef struct volume_grid volume_grid;
 enum { VOLUME_MESSAGE = 400, VOLUME_EDGE = 8, VOLUME_CELLS = 512 };
 
 typedef struct volume_form {
-    double voxel;
+    double origin[3], voxel;
     float outside, inside; /* of a grid of numbers: the background, and what tiles inside have */
     int32_t is_mask;
     int32_t is_distance;
