@@ -12,7 +12,8 @@ enum {
     S = 1 << ISO_VERB_SLICE,
     C = 1 << ISO_VERB_CONTOURS,
     I = 1 << ISO_VERB_INFO,
-    P = 1 << ISO_VERB_PREVIEW
+    P = 1 << ISO_VERB_PREVIEW,
+    L = 1 << ISO_VERB_LATTICE
 };
 
 typedef enum flag_number {
@@ -37,7 +38,7 @@ const iso_flag_info *iso_flag_at(int i) {
 }
 
 const char *iso_verb_name(iso_verb verb) {
-    static const char *const name[] = {"slice", "contours", "info", "preview"};
+    static const char *const name[] = {"slice", "contours", "info", "preview", "lattice"};
     return name[verb];
 }
 
@@ -71,8 +72,8 @@ static int find_flag(const char *name) {
     return -1;
 }
 
-static bool has_options(iso_verb verb) {
-    return verb == ISO_VERB_SLICE || verb == ISO_VERB_CONTOURS;
+bool iso_verb_has_options(iso_verb verb) {
+    return verb == ISO_VERB_SLICE || verb == ISO_VERB_CONTOURS || verb == ISO_VERB_LATTICE;
 }
 
 static iso_status fail_unknown(const walk *along, const char *written) {
@@ -85,7 +86,7 @@ static iso_status fail_unknown(const walk *along, const char *written) {
             near = flag_table[i].name;
         }
     }
-    if (!near && has_options(along->verb))
+    if (!near && iso_verb_has_options(along->verb))
         near = iso_option_suggest(name);
     char suggestion[64];
     snprintf(suggestion, sizeof suggestion, "%s", near ? near : "help");
@@ -123,7 +124,7 @@ static iso_status read_long(walk *along, argument *found, const char *text) {
     for (int turn = 0; turn < 2; turn++) {
         int flag = find_flag(name), option = iso_option_find(name);
         bool flag_fits = flag >= 0 && (flag_table[flag].verbs & 1u << along->verb);
-        bool option_fits = option >= 0 && has_options(along->verb);
+        bool option_fits = option >= 0 && iso_verb_has_options(along->verb);
         if (flag_fits && (positive || !*flag_table[flag].argument)) {
             *found = (argument){IS_FLAG, flag, !positive, along->name, NULL};
             return take_value(along, found, equals, !*flag_table[flag].argument);
@@ -205,6 +206,14 @@ static iso_status read_count(int32_t *count, const argument *given, int32_t most
     return ISO_OK;
 }
 
+static iso_status read_length(double *length, const argument *given) {
+    const char *at = given->value;
+    if (!iso_number_read(length, &at) || *at != 0 || *length < 0 || *length > 1000)
+        return iso_fail(ISO_USAGE, "%s %.60s: mm from 0 to 1000 are due", given->written,
+                        given->value);
+    return ISO_OK;
+}
+
 static iso_status read_layers(iso_arguments *arguments, const argument *given) {
     const char *at = given->value;
     arguments->layer_count = 0;
@@ -279,6 +288,8 @@ static iso_status read_flag(iso_arguments *arguments, const argument *given) {
         return read_count(&arguments->threads, given, 1024);
     case FLAG_columns:
         return read_count(&arguments->columns, given, 100);
+    case FLAG_voxel:
+        return read_length(&arguments->voxel, given);
     case FLAG_layers:
         return read_layers(arguments, given);
     case FLAG_help:

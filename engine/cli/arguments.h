@@ -13,10 +13,13 @@ typedef enum iso_verb {
     ISO_VERB_CONTOURS,
     ISO_VERB_INFO,
     ISO_VERB_PREVIEW,
+    ISO_VERB_LATTICE,
     ISO_VERB_COUNT
 } iso_verb;
 
 const char *iso_verb_name(iso_verb verb);
+/* Are the options of a print flags of it? */
+bool iso_verb_has_options(iso_verb verb);
 
 typedef struct iso_flag_info {
     const char *name; /* '_' stands for '-' */
@@ -46,6 +49,7 @@ typedef struct iso_arguments {
     iso_page page; /* to be printed instead of working */
     bool strict, quiet, progress, timestamp, travels, json;
     int32_t threads, columns;
+    double voxel;                /* mm; 0: automatic */
     const char *output, *report; /* NULL if not given; borrowed from argv, as the files are */
     const char *const *file;
     int32_t file_count, config_count;

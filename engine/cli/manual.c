@@ -14,6 +14,7 @@ static const char *const verb_usage[] = {
     "isoslice contours [options] part.stl [more.stl...] [-o part.mlk|part.json|part.svg]",
     "isoslice info [--json] part.stl [more.stl...]",
     "isoslice preview part.gcode [-o part.svg]",
+    "isoslice lattice [options] part.stl -o lattice.stl|lattice.vdb|lattice.gcode",
 };
 
 static const char *const verb_help[] = {
@@ -21,6 +22,7 @@ static const char *const verb_help[] = {
     "Cut models into the contours of their layers: as a link file, as JSON or as a picture.",
     "Say how many triangles a model has, how large it is, and what is wrong with it.",
     "Draw layers of a G-code file as a picture.",
+    "Make a model porous: as a mesh, as a volume (OpenVDB) or as G-code, with a report of its pores.",
 };
 
 /* Exit codes and what they mean. */
@@ -93,7 +95,7 @@ static void print_help(const iso_arguments *arguments) {
         printf("       %s\n", verb_usage[v]);
     printf("\n%s%s\n\n", verb_help[arguments->verb], all ? " Each verb has its own --help." : "");
     print_flags(arguments->verb);
-    if (arguments->verb == ISO_VERB_SLICE || arguments->verb == ISO_VERB_CONTOURS)
+    if (iso_verb_has_options(arguments->verb))
         printf(
             "\nEvery option of a print is a flag too, as --layer-height 0.2; those that are 0 or 1 are\n"
             "switches, as --ironing and --no-cooling. --list-options has them all. They have\n"
@@ -271,6 +273,7 @@ static void print_man(void) {
     print_roff("isoslice -c printer.ini --layer-height 0.2 part.stl -o part.gcode");
     print_roff("isoslice --arrange --duplicate 3 part.stl lid.stl");
     print_roff("isoslice preview part.gcode --layers 1,20,-1 -o part.svg");
+    print_roff("isoslice lattice part.stl --lattice-cell 4 --fill-density 30% -o lattice.stl");
     printf(".fi\n");
 }
 

@@ -6,37 +6,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "progress.h"
 #include "verbs.h"
 #include "warnings.h"
-
-/* ---- progress ---- */
-
-typedef struct progress {
-    double drawn; /* seconds, when the line was drawn last */
-    bool shown;
-} progress;
-
-static double clock_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
-
-/* One line that is drawn over itself, twenty times a second at most. */
-static void draw_progress(void *payload, double done, const char *stage) {
-    progress *line = payload;
-    double now = clock_seconds();
-    if (line->shown && now - line->drawn < 0.05)
-        return;
-    fprintf(stderr, "\r\033[K%3.0f%% %s", done * 100, stage);
-    line->drawn = now;
-    line->shown = true;
-}
-
-static void clear_progress(const progress *line) {
-    if (line->shown)
-        fprintf(stderr, "\r\033[K");
-}
 
 static void print_summary(const iso_report *report, const char *output) {
     int seconds = (int)(report->print.time + 0.5);
@@ -62,32 +34,35 @@ static iso_status choose_timestamp(int64_t *timestamp, bool real) {
     return ISO_OK;
 }
 
-static iso_status run_job(iso_report *report, const iso_arguments *arguments, const char *output) {
-    progress line = {0};
-    iso_job_hooks hooks = {.threads = arguments->threads};
+iso_status iso_slice_files(iso_report *report, const iso_arguments *arguments,
+                           const iso_options *options, const iso_lattice_cut *cut,
+                           const char *output) {
+    iso_progress line = {0};
+    iso_job_hooks hooks = {.threads = arguments->threads, .lattice_cut = cut};
     bool talks = arguments->progress && !arguments->quiet;
     ISO_TRY(choose_timestamp(&hooks.timestamp, arguments->timestamp));
     if (talks) {
-        hooks.progress = draw_progress;
+        hooks.progress = iso_progress_draw;
         hooks.payload = &line;
     }
-    iso_status status = iso_job_run(report, &arguments->options, arguments->file,
-                                    arguments->file_count, output, &hooks);
-    clear_progress(&line);
+    iso_status status =
+        iso_job_run(report, options, arguments->file, arguments->file_count, output, &hooks);
+    iso_progress_clear(&line);
     if (status == ISO_OK && talks)
         print_summary(report, output);
     return status;
 }
 
-/* A job that failed has a report too; the first failure is the one that counts. */
-static iso_status finish(iso_report *report, const iso_arguments *arguments, iso_status status) {
+iso_status iso_finish_job(iso_report *report, const iso_arguments *arguments,
+                          const iso_options *options, iso_status status) {
     char message[1024];
     snprintf(message, sizeof message, "%s", iso_error_message());
     iso_status after = iso_warnings_add(report, &arguments->notes);
     if (!arguments->quiet)
         iso_warnings_print(report);
-    if (after == ISO_OK && arguments->report)
-        after = iso_report_write(report, &arguments->options, status, message, arguments->report);
+    const char *path = arguments->json && !arguments->report ? "-" : arguments->report;
+    if (after == ISO_OK && path)
+        after = iso_report_write(report, options, status, message, path);
     if (status == ISO_OK)
         return after;
     if (after != ISO_OK)
@@ -109,8 +84,8 @@ iso_status iso_verb_slice(const iso_arguments *arguments) {
     ISO_TRY(iso_keep_files(arguments, output));
     ISO_TRY(iso_keep_files(arguments, arguments->report));
     iso_report report = {0};
-    iso_status status = run_job(&report, arguments, output);
-    status = finish(&report, arguments, status);
+    iso_status status = iso_slice_files(&report, arguments, &arguments->options, NULL, output);
+    status = iso_finish_job(&report, arguments, &arguments->options, status);
     iso_report_free(&report);
     return status;
 }

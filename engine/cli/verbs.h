@@ -4,12 +4,26 @@
 
 #include <isoslice/status.h>
 
+#include <isoslice/lattice.h>
+#include <isoslice/report.h>
+
 #include "arguments.h"
 
 iso_status iso_verb_slice(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_verb_contours(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_verb_info(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_verb_preview(const iso_arguments *arguments) ISO_MUST_CHECK;
+iso_status iso_verb_lattice(const iso_arguments *arguments) ISO_MUST_CHECK;
+
+/* Slice the arguments' files with these options, `cut` taken out of its lattice (NULL: nothing). */
+iso_status iso_slice_files(iso_report *report, const iso_arguments *arguments,
+                           const iso_options *options, const iso_lattice_cut *cut,
+                           const char *output) ISO_MUST_CHECK;
+
+/* Print the warnings and write the report of a job that came to `status`, which is returned: one
+ * that failed has a report too, and the first failure is the one that counts. */
+iso_status iso_finish_job(iso_report *report, const iso_arguments *arguments,
+                          const iso_options *options, iso_status status) ISO_MUST_CHECK;
 
 /* Print arguments->page to standard output. */
 iso_status iso_page_print(const iso_arguments *arguments) ISO_MUST_CHECK;

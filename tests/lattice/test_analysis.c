@@ -71,6 +71,7 @@ static void test_a_cavity_is_a_closed_pore(void) {
     iso_body_counts c = count_of(&body);
     double v = 0.15 * 0.15 * 0.15;
     CHECK_NEAR(8000, (double)c.part * v, 0.01 * 8000); /* whole voxels on flat sides */
+    CHECK_NEAR(8000, c.part_share * v, 0.001 * 8000);
     CHECK_NEAR(4 * PI / 3 * 125, (double)(c.part - c.material) * v, 1);
     CHECK_EQUAL(1, c.closed_pores);
     CHECK_NEAR(4 * PI / 3 * 125, (double)c.closed_voxels * v, 1);

@@ -9,6 +9,7 @@
 #include <isoslice/gcode.h>
 #include <isoslice/mesh.h>
 #include <isoslice/planar.h>
+#include <isoslice/porous.h>
 #include <isoslice/status.h>
 
 typedef struct iso_report_input {
@@ -64,6 +65,9 @@ typedef struct iso_report {
     double mesh_volume;    /* mm^3 of the meshes clipped to the printed height */
     double sliced_volume;  /* mm^3, sum of each layer's area times its height */
     iso_report_solid solid;
+    const iso_porous_figures *lattice; /* of isoslice lattice, borrowed; NULL: there are none */
+    const char *lattice_output; /* a constant: "mesh", "distance", "mask", "gcode"; NULL: nothing */
+    int64_t lattice_triangles;  /* of the mesh */
     iso_planar_counts kernel;
     iso_gcode_totals print;
     double seconds;          /* of the whole job, on the clock */

@@ -230,6 +230,52 @@ static void write_print(iso_json *json, const iso_gcode_totals *print) {
     iso_json_end(json, '}');
 }
 
+static void write_pores(iso_json *json, const iso_porous_figures *f) {
+    if (f->detail > 0) {
+        iso_json_begin(json, "pore_size_mm", '{');
+        iso_json_number(json, "largest", f->pore_largest);
+        iso_json_number(json, "mean", f->pore_mean);
+        iso_json_number(json, "d10", f->pore_d10);
+        iso_json_number(json, "d50", f->pore_d50);
+        iso_json_number(json, "d90", f->pore_d90);
+        iso_json_end(json, '}');
+        iso_json_number(json, "wall_mean_mm", f->wall_mean);
+        iso_json_number(json, "wall_smallest_mm", f->wall_smallest);
+        iso_json_number(json, "size_step_mm", f->detail);
+    }
+    iso_json_integer(json, "pieces", f->pieces);
+    iso_json_integer(json, "pieces_removed", f->removed);
+    iso_json_number(json, "removed_mm3", f->removed_volume);
+    iso_json_integer(json, "pieces_left", f->left);
+    iso_json_integer(json, "closed_pores", f->closed_pores);
+    iso_json_number(json, "closed_mm3", f->closed_volume);
+}
+
+static void write_lattice(iso_json *json, const iso_report *report) {
+    const iso_porous_figures *f = report->lattice;
+    if (!f)
+        return;
+    iso_json_begin(json, "lattice", '{');
+    iso_json_text(json, "output", report->lattice_output ? report->lattice_output : "");
+    iso_json_integer(json, "triangles", report->lattice_triangles);
+    iso_json_number(json, "voxel_mm", f->voxel);
+    iso_json_integer(json, "voxels", f->voxels);
+    iso_json_number(json, "cell_mm", f->cell);
+    iso_json_number(json, "cells", f->cells);
+    if (f->asked_porosity >= 0)
+        iso_json_number(json, "porosity_asked", f->asked_porosity);
+    iso_json_number(json, "porosity", f->porosity);
+    iso_json_number(json, "porosity_with_skin", f->part_porosity);
+    iso_json_number(json, "part_mm3", f->part_volume);
+    iso_json_number(json, "material_mm3", f->volume);
+    iso_json_number(json, "surface_mm2", f->surface);
+    iso_json_number(json, "pore_surface_mm2", f->pore_surface);
+    iso_json_number(json, "specific_surface_per_mm",
+                    f->part_volume > 0 ? f->pore_surface / f->part_volume : 0);
+    write_pores(json, f);
+    iso_json_end(json, '}');
+}
+
 static void write_warnings(iso_json *json, const iso_report *report) {
     iso_json_begin(json, "warnings", '[');
     for (int32_t i = 0; i < report->warning_count; i++) {
@@ -260,6 +306,7 @@ iso_status iso_report_write(const iso_report *report, const iso_options *options
     write_layers(&json, report);
     write_stages(&json, report);
     write_solid(&json, &report->solid);
+    write_lattice(&json, report);
     write_kernel(&json, &report->kernel);
     write_print(&json, &report->print);
     write_warnings(&json, report);

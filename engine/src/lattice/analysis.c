@@ -9,6 +9,7 @@ enum {
     IN_MATERIAL = 1,
     IN_PART = 2,
     IN_CORE = 4,
+    IN_PIECE = 8,   /* material, swollen */
     ROWS_A_TASK = 8 /* so that taking a task costs nothing beside doing it */
 };
 
@@ -16,6 +17,7 @@ enum {
  * sums. */
 typedef struct sums {
     int64_t part, material, core, core_material;
+    double part_share; /* voxels of the border as far as they are in the part */
     double surface, pore_surface;
 } sums;
 
@@ -66,15 +68,19 @@ static iso_status counting_new(counting *c, const iso_body *body, iso_pool *pool
 /* ---- a plane of voxels ---- */
 
 static void classify(uint8_t *voxel, sums *sum, const float *material, const float *part,
-                     int32_t count, double skin) {
+                     int32_t count, const iso_body *body) {
     int64_t n[4] = {0, 0, 0, 0};
-    float depth = (float)-skin;
+    float depth = (float)-body->skin, swell = (float)body->swell, each = (float)(1 / body->voxel);
+    double share = 0;
     for (int32_t i = 0; i < count; i++) {
+        share += fminf(1, fmaxf(0, 0.5f - part[i] * each));
         int in_part = part[i] <= 0, in_material = material[i] <= 0;
         int in_core = part[i] <= depth && in_part;
-        voxel[i] = (uint8_t)(in_material * IN_MATERIAL + in_part * IN_PART + in_core * IN_CORE);
+        voxel[i] = (uint8_t)(in_material * IN_MATERIAL + in_part * IN_PART + in_core * IN_CORE +
+                             (material[i] <= swell && in_part) * IN_PIECE);
         n[0] += in_part, n[1] += in_material, n[2] += in_core, n[3] += in_core && in_material;
     }
+    sum->part_share += share;
     sum->part += n[0], sum->material += n[1], sum->core += n[2], sum->core_material += n[3];
 }
 
@@ -93,7 +99,7 @@ static iso_status sample_rows(void *payload, int64_t task, int worker) {
             .j = j,
             .k = c->k};
         ISO_TRY(body->sample(body->payload, c->material[0] + at, c->part[0] + at, &row, worker));
-        classify(c->voxel + at, sum, c->material[0] + at, c->part[0] + at, c->columns, body->skin);
+        classify(c->voxel + at, sum, c->material[0] + at, c->part[0] + at, c->columns, body);
     }
     return ISO_OK;
 }
@@ -102,14 +108,15 @@ static iso_status sample_rows(void *payload, int64_t task, int worker) {
  * along axis a, and a distance changes by v |n_a| from one to the next: so v |change| a pair adds
  * up to n_x^2 + n_y^2 + n_z^2 = 1 times the area, whatever its slope. */
 static void cross(sums *sum, const float *material, const float *part, const float *other_material,
-                  const float *other_part, int32_t count) {
+                  const float *other_part, int32_t count, double voxel) {
     for (int32_t i = 0; i < count; i++) {
         double a = material[i], b = other_material[i];
         if ((a <= 0) == (b <= 0))
             continue;
-        sum->surface += fabs(a - b);
+        double change = fmin(fabs(a - b), voxel); /* where it isn't quite a distance */
+        sum->surface += change;
         if ((a > 0 ? part[i] : other_part[i]) <= 0)
-            sum->pore_surface += fabs(a - b);
+            sum->pore_surface += change;
     }
 }
 
@@ -118,17 +125,18 @@ static iso_status cross_rows(void *payload, int64_t task, int worker) {
     (void)worker;
     int32_t last = (int32_t)(task + 1) * ROWS_A_TASK, columns = c->columns;
     sums *sum = &c->sum[task];
+    double voxel = c->body->voxel;
     for (int32_t j = (int32_t)task * ROWS_A_TASK; j < last && j < c->rows; j++) {
         int64_t at = (int64_t)j * columns;
         const float *material = c->material[0] + at, *part = c->part[0] + at;
-        cross(sum, material, part, material + 1, part + 1, columns - 1);
+        cross(sum, material, part, material + 1, part + 1, columns - 1, voxel);
         if (j > 0)
-            cross(sum, material, part, material - columns, part - columns, columns);
+            cross(sum, material, part, material - columns, part - columns, columns, voxel);
         if (c->k > 0)
-            cross(sum, material, part, c->material[1] + at, c->part[1] + at, columns);
+            cross(sum, material, part, c->material[1] + at, c->part[1] + at, columns, voxel);
     }
-    sum->surface *= c->body->voxel;
-    sum->pore_surface *= c->body->voxel;
+    sum->surface *= voxel;
+    sum->pore_surface *= voxel;
     return ISO_OK;
 }
 
@@ -143,13 +151,14 @@ static iso_status count_plane(counting *c) {
     ISO_TRY(iso_parallel_for(c->pool, c->tasks, sample_rows, c));
     ISO_TRY(iso_parallel_for(c->pool, c->tasks, cross_rows, c));
     for (int64_t t = 0; t < c->tasks; t++) {
+        c->total.part_share += c->sum[t].part_share;
         c->total.part += c->sum[t].part, c->total.material += c->sum[t].material;
         c->total.core += c->sum[t].core, c->total.core_material += c->sum[t].core_material;
         c->total.surface += c->sum[t].surface, c->total.pore_surface += c->sum[t].pore_surface;
     }
     ISO_TRY(labels_plane(&c->parts, c->voxel, IN_PART, IN_PART, NULL));
-    ISO_TRY(labels_plane(&c->solids, c->voxel, IN_MATERIAL, IN_MATERIAL, &c->parts.at));
-    return labels_plane(&c->airs, c->voxel, IN_MATERIAL, 0, NULL);
+    ISO_TRY(labels_plane(&c->solids, c->voxel, IN_PIECE, IN_PIECE, &c->parts.at));
+    return labels_plane(&c->airs, c->voxel, IN_PIECE, 0, NULL);
 }
 
 /* ---- pieces ---- */
@@ -200,6 +209,7 @@ static iso_status finish(iso_body_counts *counts, counting *c) {
     ISO_TRY(labels_end(&c->solids));
     ISO_TRY(labels_end(&c->airs));
     *counts = (iso_body_counts){.part = c->total.part,
+                                .part_share = c->total.part_share,
                                 .material = c->total.material,
                                 .core = c->total.core,
                                 .core_material = c->total.core_material,

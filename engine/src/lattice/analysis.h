@@ -31,13 +31,16 @@ typedef struct iso_body {
     double voxel;
     int32_t size[3]; /* voxels; those of the border must be outside the part */
     double skin;     /* mm; what is deeper in the part is its core */
+    double swell; /* mm; to tell what is connected, material is so much thicker on all sides: walls
+                   * thinner than a voxel have holes in a grid, though not in truth */
     body_sample *sample;
     void *payload;
 } iso_body;
 
 typedef struct iso_body_counts {
     int64_t part, material, core, core_material; /* voxels */
-    double surface, pore_surface;                /* mm^2; the second within the part */
+    double part_share;            /* voxels: those of the part's border count by what is within */
+    double surface, pore_surface; /* mm^2; the second within the part */
     int64_t pieces, closed_pores, closed_voxels;
     int64_t kept;     /* pieces: the largest of each connected body of the part */
     iso_piece *loose; /* [loose_count] the others, in a fixed order; free with iso_release */

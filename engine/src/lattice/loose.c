@@ -44,7 +44,8 @@ static iso_status sample_box(search *s) {
                                 .k = -1};
             ISO_TRY(body->sample(body->payload, s->material, s->part, &row, 0));
             for (int32_t i = 0; i < s->size[0]; i++)
-                voxel[i] = s->material[i] <= 0 ? MATERIAL : VOID;
+                voxel[i] =
+                    s->material[i] <= (float)body->swell && s->part[i] <= 0 ? MATERIAL : VOID;
         }
     return ISO_OK;
 }

@@ -271,7 +271,7 @@ static void measure(cube *c) {
         c->material_points += c->material[at] <= 0;
         for (int axis = 0; axis < 3; axis++) {
             double a = c->material[at], b = c->material[at + next[axis]];
-            c->crossed += (a <= 0) != (b <= 0) ? fabs(a - b) : 0;
+            c->crossed += (a <= 0) != (b <= 0) ? fmin(fabs(a - b), c->step) : 0;
         }
     }
 }
