@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "mesh/repair.h"
+#include "solid/remake.h"
 
 enum {
     BATCH = 64,
@@ -291,6 +292,14 @@ static void resolve(iso_mesh *mesh) {
     }
 }
 
+static iso_status make_anew(iso_mesh *mesh, iso_mesh *soup, const iso_mesh_options *options) {
+    if (soup->triangle_count == 0)
+        return iso_fail(ISO_UNSLICEABLE, "nothing is left of %lld triangles without area",
+                        (long long)soup->defects.triangles_read);
+    iso_mesh_find_box(soup);
+    return remake_surface(mesh, soup, options);
+}
+
 static double thickness_of(const iso_mesh_options *options) {
     return options ? options->sheet_thickness : 0;
 }
@@ -303,6 +312,11 @@ iso_status iso_mesh_builder_finish(iso_mesh *mesh, iso_mesh_builder *b,
     iso_release(b->table);
     iso_release(b->crowd);
     b->head = b->table = b->crowd = NULL;
+    if (options && options->volume) {
+        iso_status remade = make_anew(mesh, &b->mesh, options);
+        iso_mesh_builder_discard(b);
+        return remade;
+    }
     iso_status status = iso_mesh_repair(&b->mesh, b->open, b->excess, thickness_of(options));
     if (status == ISO_OK) {
         *mesh = b->mesh;
