@@ -163,7 +163,7 @@ def check_killed(scenario):
 
 
 def check_kernel(scenario):
-    lines = (scenario.results / "kernel.txt").read_text(errors="replace").splitlines()
+    lines = scenario.text("kernel.txt").splitlines()
     scenario.expect("complaints of the kernel", [x for x in lines if COMPLAINTS.search(x)], [])
 
 
@@ -175,6 +175,10 @@ CHECKS = {"pulled": check_taken_up, "pulled_and_reset": check_taken_up_after_res
 def main():
     results, name = pathlib.Path(sys.argv[1]), sys.argv[2]
     scenario = Scenario(results, name)
+    if not (scenario.folder / "exit").exists():
+        print(f"{name}: the guest stopped in it, or never got there; its console:")
+        print((results / "console.txt").read_text(errors="replace")[-8000:])
+        return 1
     scenario.expect("exit code of the scenario", scenario.text("exit").strip(), "0")
     CHECKS[name](scenario)
     check_kernel(scenario)
@@ -183,7 +187,7 @@ def main():
     if scenario.wrong:
         for path in sorted(scenario.folder.glob("*")):
             print(f"---- {path.name}")
-            print(path.read_text(errors="replace")[-3000:])
+            print(path.read_text(errors="replace")[-6000:])
     return 1 if scenario.wrong else 0
 
 
