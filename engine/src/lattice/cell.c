@@ -8,8 +8,8 @@
 /* A family's table: steps enough that the nearest surface is found within 0.001 of a cell. */
 typedef struct family {
     iso_status (*fill)(iso_lattice_cell *cell, const iso_lattice_options *options);
-    int32_t first, last; /* patterns */
-    int32_t size, repeat;
+    int32_t first, last;  /* patterns */
+    int32_t size, repeat; /* 0: as its file asks for */
 } family;
 
 static const family families[] = {
@@ -19,6 +19,7 @@ static const family families[] = {
     {bone_fill, ISO_LATTICE_BONE_SHEET, ISO_LATTICE_BONE_SOLID, 128, 4},
     {voxel_cubic_fill, ISO_LATTICE_VOXEL_CUBIC, ISO_LATTICE_VOXEL_CUBIC, 64, 1},
     {voxel_random_fill, ISO_LATTICE_VOXEL_RANDOM, ISO_LATTICE_VOXEL_RANDOM, 128, 4},
+    {voxel_file_fill, ISO_LATTICE_VOXEL_FILE, ISO_LATTICE_VOXEL_FILE, 0, 1},
 };
 
 static const family *family_of(int32_t pattern) {
@@ -42,7 +43,9 @@ iso_status cell_make(iso_lattice_cell *cell, const iso_lattice_options *options)
     for (int axis = 0; axis < 3; axis++)
         cell->size[axis] = f->size, cell->repeat[axis] = f->repeat;
     cell->has_sides = has_sides(options->pattern);
-    iso_status status = ISO_ALLOCATE(cell->distance, (int64_t)f->size * f->size * f->size);
+    iso_status status = ISO_OK;
+    if (f->size > 0)
+        status = ISO_ALLOCATE(cell->distance, (int64_t)f->size * f->size * f->size);
     if (status == ISO_OK)
         status = f->fill(cell, options);
     if (status == ISO_OK)

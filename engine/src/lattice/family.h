@@ -16,6 +16,10 @@ iso_status voxel_cubic_fill(iso_lattice_cell *cell,
 iso_status voxel_random_fill(iso_lattice_cell *cell,
                              const iso_lattice_options *options) ISO_MUST_CHECK;
 
+/* Chooses the size and allocates the table itself. */
+iso_status voxel_file_fill(iso_lattice_cell *cell,
+                           const iso_lattice_options *options) ISO_MUST_CHECK;
+
 /* Level table and steepest of a filled cell. */
 iso_status cell_measure(iso_lattice_cell *cell) ISO_MUST_CHECK;
 
