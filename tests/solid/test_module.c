@@ -22,15 +22,29 @@ static void *open_solid(void *payload) {
     return NULL;
 }
 
+/* What test_maps.py looks for in the program's. */
+static int is_mapped(const char *name) {
+    char line[2 * PATH_MAX];
+    int found = 0;
+    FILE *maps = fopen("/proc/self/maps", "r");
+    while (maps && fgets(line, sizeof line, maps))
+        found |= strstr(line, name) != NULL;
+    if (maps)
+        fclose(maps);
+    return found;
+}
+
 static void test_same_table_for_all_threads(void) {
     pthread_t thread[THREADS];
     const void *table[THREADS];
+    CHECK(!is_mapped("embree") && !is_mapped("isoslice-solid.so"));
     for (int i = 0; i < THREADS; i++)
         CHECK_EQUAL(0, pthread_create(&thread[i], NULL, open_solid, &table[i]));
     for (int i = 0; i < THREADS; i++) {
         pthread_join(thread[i], NULL);
         CHECK(table[i] != NULL && table[i] == table[0]);
     }
+    CHECK(is_mapped("embree") && is_mapped("isoslice-solid.so"));
 }
 
 /* Run `program` with ISOSLICE_MODULES; its status, and what it said. */
