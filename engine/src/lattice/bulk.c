@@ -13,7 +13,7 @@
 #define SCALE_MOST 1.6
 /* Squares of a bead's width: smaller islands are lost in the rounding of what a printer can do,
  * and up to which a single short bead will do. */
-#define AREA_LEAST 0.02
+#define AREA_LEAST 0.06
 #define AREA_DOT 4
 #define DOT_LENGTH 0.5 /* of a dot at least, in bead widths */
 

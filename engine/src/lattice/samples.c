@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-/* Samples a cell for a start, and for what is thinner than a sheet: the least strut asked for is a
+/* Samples a cell, for lines and for sections: struts of the least density worth asking for are a
  * tenth of a cell thick. */
-enum { SHEET_SAMPLES = 20, SAMPLES = 32 };
+enum { LINE_SAMPLES = 20, SECTION_SAMPLES = 40 };
 /* What a period holds is measured in so many times finer steps. */
 enum { FINER = 3 };
 /* mm; how far a chord between samples of a large cell may lie from its curve: curves there have
@@ -13,14 +13,21 @@ enum { FINER = 3 };
 /* mm; no nozzle tells finer steps. */
 #define STEP_LEAST 0.01
 
-static double step_of(const iso_lattice_slice *slice) {
-    const iso_lattice_cell *table = lattice_cell(slice->lattice);
-    double cell = lattice_smallest_cell(slice->lattice);
-    double step = cell / (table->has_sides ? SHEET_SAMPLES : SAMPLES);
+static double step_of(const iso_lattice_slice *slice, int samples_a_cell) {
+    double cell = lattice_smallest_cell(slice->lattice), step = cell / samples_a_cell;
     double chord = sqrt(2 * cell * CHORD);
+    if (slice->step > 0)
+        return slice->step;
     step = step < chord ? step : chord;
-    step = slice->step > 0 ? slice->step : step > STEP_LEAST ? step : STEP_LEAST;
-    return cell / ceil(cell / step - 1e-9);
+    return step > STEP_LEAST ? step : STEP_LEAST;
+}
+
+double samples_line_step(const iso_lattice_slice *slice) {
+    return step_of(slice, LINE_SAMPLES);
+}
+
+double samples_section_step(const iso_lattice_slice *slice) {
+    return step_of(slice, SECTION_SAMPLES);
 }
 
 /* The columns of a row that are asked for: where the region is, and their neighbours. */
@@ -81,16 +88,17 @@ static void take_row(taking *t, int32_t j, int32_t first, int32_t count) {
 }
 
 iso_status samples_take(samples *out, const iso_region *region, const iso_lattice_slice *slice,
-                        double reach, iso_arena *scratch) {
+                        double step, double reach, iso_arena *scratch) {
     const iso_lattice_cell *table = lattice_cell(slice->lattice);
-    double step = step_of(slice), origin[2] = {slice->shift.x, slice->shift.y};
+    double cell = lattice_smallest_cell(slice->lattice);
+    double origin[2] = {slice->shift.x, slice->shift.y};
+    step = cell / ceil(cell / step - 1e-9);
     *out = (samples){.has_sides = table->has_sides, .thin = SAMPLES_FAR, .thick = -SAMPLES_FAR};
     ISO_TRY(raster_make(&out->raster, region, origin, step * ISO_UNITS_PER_MM, reach, scratch));
     const raster *r = &out->raster;
     out->period = r->rows;
     if (lattice_is_uniform(slice->lattice) && table->repeat[0] == table->repeat[1]) {
-        double samples_a_period =
-            floor(lattice_smallest_cell(slice->lattice) / step + 0.5) * table->repeat[0];
+        double samples_a_period = floor(cell / step + 0.5) * table->repeat[0];
         if (samples_a_period < r->rows && samples_a_period < r->columns) {
             out->period = (int32_t)samples_a_period;
             out->repeats = 1;

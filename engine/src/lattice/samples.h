@@ -20,9 +20,14 @@ typedef struct samples {
 /* Mm for what is void or solid altogether, and for what isn't asked. */
 #define SAMPLES_FAR 1e6
 
-/* Everything is in `scratch`. `reach` as in raster_make. */
+/* mm between samples, if the slice doesn't say: for the lines in the middle of sheets, or for the
+ * sections of whatever there is. */
+double samples_line_step(const iso_lattice_slice *slice);
+double samples_section_step(const iso_lattice_slice *slice);
+
+/* Everything is in `scratch`. `step` mm or a little less, `reach` as in raster_make. */
 iso_status samples_take(samples *out, const iso_region *region, const iso_lattice_slice *slice,
-                        double reach, iso_arena *scratch) ISO_MUST_CHECK;
+                        double step, double reach, iso_arena *scratch) ISO_MUST_CHECK;
 
 static inline const float *samples_distance(const samples *s, int32_t j) {
     return s->distance + (int64_t)(j % s->period) * s->raster.columns;

@@ -128,7 +128,8 @@ iso_status lattice_section(iso_region *out, const iso_region *area, const iso_la
     iso_region_clear(out);
     if (area->count == 0)
         return ISO_OK;
-    iso_status status = samples_take(&taken, area, slice, REACH, scratch);
+    iso_status status =
+        samples_take(&taken, area, slice, samples_section_step(slice), REACH, scratch);
     if (status == ISO_OK)
         status = section_of(out, area, &taken, &everything, &f);
     iso_arena_pop(scratch, mark);
@@ -154,7 +155,8 @@ static iso_status fill_bulk(const filling *f, const iso_region *region, uint32_t
     iso_offset_options grow = iso_offset_defaults(f->fill->margin);
     iso_status status = iso_offset(&area, region, &grow, f->planar);
     if (status == ISO_OK)
-        status = samples_take(&taken, &area, f->slice, REACH, f->scratch);
+        status = samples_take(&taken, &area, f->slice, samples_section_step(f->slice), REACH,
+                              f->scratch);
     if (status == ISO_OK && !taken.has_sides)
         status = fill_share(f, &area, &taken, &everything);
     else
@@ -174,7 +176,8 @@ static iso_status fill_all(const filling *f, const iso_region *region) {
     sheet_bead bead = sheet_bead_of(f->fill);
     if (!lattice_cell(f->slice->lattice)->has_sides)
         return fill_bulk(f, region, left);
-    ISO_TRY(samples_take(&taken, region, f->slice, bead.tolerance + REACH, f->scratch));
+    ISO_TRY(samples_take(&taken, region, f->slice, samples_line_step(f->slice),
+                         bead.tolerance + REACH, f->scratch));
     ISO_TRY(sheet_draw(f->out, &left, region, &taken, f->fill, f->scratch));
     return left ? fill_bulk(f, region, left) : ISO_OK;
 }
