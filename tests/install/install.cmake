@@ -16,6 +16,9 @@ run(${SCRATCH}/build/consumer ${SCRATCH}/part.stl ${SCRATCH}/part.gcode)
 run(${prefix}/bin/isoslice --strict -c ${prefix}/share/isoslice/profiles/printers/marlin-220.ini
     ${SCRATCH}/part.stl -o ${SCRATCH}/part.gcode)
 run(${prefix}/bin/isoslice --version)
+if(MODULES)
+  run(${prefix}/bin/isoslice --check-solid full ${SCRATCH}/part.stl -o ${SCRATCH}/checked.gcode)
+endif()
 run(${CMAKE_COMMAND} -S ${CONSUMER}/../printer -B ${SCRATCH}/build-printer
     -D CMAKE_C_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release
     -D VERSION=${VERSION})

@@ -81,7 +81,7 @@ static iso_status open_locked(const void **table, const description *module) {
     char path[PATH_MAX], tried[400] = "";
     if (!find(path, tried, sizeof tried, module->file))
         return iso_fail(ISO_BAD_CONFIG,
-                        "%s is not in %s: install it (it is built where %s are), or name its "
+                        "%s is not in %s: install it (to build it takes %s), or name its "
                         "folder in ISOSLICE_MODULES",
                         module->file, tried, module->development);
     void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
