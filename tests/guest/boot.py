@@ -90,10 +90,8 @@ def wait_for(qemu, console, begun):
         if console.exists() and console.stat().st_size != size:
             size, heard = console.stat().st_size, time.monotonic()
     # Even with its interrupts off the kernel panics at this, and says on the console where it was.
-    qemu.stdin.write(b"nmi\n")
-    qemu.stdin.flush()
     try:
-        qemu.wait(10)
+        qemu.communicate(b"nmi\n", timeout=10)
     except subprocess.TimeoutExpired:
         qemu.kill()
     return None
