@@ -13,6 +13,7 @@
 #include "config/settings_objects.h"
 #include "lattice_figures.h"
 #include "progress.h"
+#include "solid/module.h"
 #include "verbs.h"
 
 typedef enum format { FORMAT_STL, FORMAT_VDB, FORMAT_GCODE, FORMAT_COUNT } format;
@@ -148,7 +149,7 @@ static iso_porous_options options_of(work *w) {
 
 static iso_status warn_of_figures(work *w) {
     const iso_porous_figures *f = &w->figures;
-    if (f->wall_smallest > 0 && f->voxel > f->wall_smallest / 2 && w->format != FORMAT_GCODE)
+    if (f->wall_smallest > 0 && f->voxel > f->wall_smallest / 1.5 && w->format != FORMAT_GCODE)
         ISO_TRY(
             iso_report_warn(&w->report, "lattice-coarse",
                             "voxels of %.3g mm are too coarse for walls of %.3g mm: --voxel %.2g "
@@ -197,24 +198,39 @@ static iso_status write_vdb(work *w) {
     return ISO_OK;
 }
 
-/* A print needs neither module, only what is told about it does. */
+/* A print needs no module, only what is told about it does. */
+static iso_status find_reason(const char **reason, const work *w) {
+    static const char *const several = "several objects are printed";
+    static char missing[256];
+    const void *table;
+    *reason = w->objects.count > 1 ? several : NULL;
+    for (int m = 0; m < ISO_MODULE_COUNT && !*reason; m++) {
+        if (module_open(&table, m) == ISO_OK)
+            continue;
+        snprintf(missing, sizeof missing, "%s", iso_error_message());
+        *reason = missing;
+    }
+    if (*reason && settings.lattice_open)
+        return iso_fail(ISO_BAD_CONFIG, "lattice_open can't be told: %s", *reason);
+    return ISO_OK;
+}
+
 static iso_status write_gcode(work *w) {
     iso_lattice_cut cut = {0};
     const iso_lattice_cut *used = NULL;
-    iso_status status = load(w);
-    if (status == ISO_OK && w->objects.count > 1) {
-        ISO_TRY(iso_report_warn(&w->report, "lattice-not-analysed",
-                                "several objects are printed and none of them analysed: pieces "
-                                "that hold to nothing stay"));
-    } else if (status == ISO_OK) {
-        status = analyse(w);
-        if (status == ISO_OK) {
-            iso_porous_cut(&cut, w->porous);
-            used = &cut;
-        }
+    const char *reason;
+    ISO_TRY(load(w));
+    ISO_TRY(find_reason(&reason, w));
+    if (reason) {
+        ISO_TRY(iso_report_warn(
+            &w->report, "lattice-not-analysed",
+            "not looked at: pieces of the lattice that hold to nothing stay; %s", reason));
+    } else {
+        ISO_TRY(analyse(w));
+        iso_porous_cut(&cut, w->porous);
+        used = &cut;
     }
     iso_progress_clear(&w->line);
-    ISO_TRY(status);
     w->report.lattice_output = "gcode";
     return iso_slice_files(&w->report, w->arguments, &settings, used, w->output);
 }

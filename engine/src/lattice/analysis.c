@@ -1,6 +1,7 @@
 #include "lattice/analysis.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -10,6 +11,7 @@ enum {
     IN_PART = 2,
     IN_CORE = 4,
     IN_PIECE = 8,   /* material, swollen */
+    PORE_LEAST = 8, /* voxels: a cube of two a side */
     ROWS_A_TASK = 8 /* so that taking a task costs nothing beside doing it */
 };
 
@@ -194,11 +196,13 @@ static iso_status find_loose(iso_body_counts *counts, counting *c) {
     return ISO_OK;
 }
 
+/* Pores of a few voxels aren't told from what voxels make of sharp corners. */
 static void find_closed(iso_body_counts *counts, const iso_labels *airs) {
-    counts->closed_pores = airs->lost_inner;
-    counts->closed_voxels = airs->lost_inner_voxels;
+    bool lost = airs->smallest > PORE_LEAST;
+    counts->closed_pores = lost ? airs->lost_inner : 0;
+    counts->closed_voxels = lost ? airs->lost_inner_voxels : 0;
     for (int64_t i = 0; i < airs->done_count; i++) {
-        if (airs->done[i].on_border)
+        if (airs->done[i].on_border || airs->done[i].voxels < PORE_LEAST)
             continue;
         counts->closed_pores++;
         counts->closed_voxels += airs->done[i].voxels;

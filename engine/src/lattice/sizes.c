@@ -7,7 +7,7 @@
 #include "base/sort.h"
 
 enum {
-    SIDE = 112,        /* points along a cube's edge */
+    SIDE = 88,         /* points along a cube's edge */
     MARGIN = SIDE / 5, /* where spheres of beyond the cube may be missing */
     POINTS = SIDE * SIDE * SIDE,
     HALF = SIDE / 2, /* spheres are painted on every other point: their number times their volume is
@@ -150,7 +150,7 @@ static void look_at_middle(cube *c, int32_t at, double radius, double steep) {
 }
 
 /* Points lie beside a wall's middle, by half a step along each axis, so that it seems thinner. */
-static iso_status refine(double *radius, const cube *c, int32_t at, int worker) {
+static iso_status refine(double *radius, const cube *c, int32_t at, int side, int worker) {
     float material[2 * FINER + 1], part[2 * FINER + 1];
     double fine = c->step / FINER;
     iso_vec3 p = {c->corner.x + (at % SIDE - 1) * c->step,
@@ -166,15 +166,25 @@ static iso_status refine(double *radius, const cube *c, int32_t at, int worker) 
                                 .exact = 1};
             ISO_TRY(c->body->sample(c->body->payload, material, part, &row, worker));
             for (int32_t i = 0; i < row.count; i++)
-                *radius = fmax(*radius, -(double)material[i]);
+                *radius = fmax(*radius,
+                               side ? -(double)material[i] : fmin(material[i], -(double)part[i]));
         }
+    return ISO_OK;
+}
+
+/* The first of the spheres is the largest. */
+static iso_status find_largest(cube *c, int worker) {
+    double radius = 0;
+    if (c->count > 0)
+        ISO_TRY(refine(&radius, c, c->sphere[0].at, 0, worker));
+    c->largest = 2 * radius;
     return ISO_OK;
 }
 
 static iso_status find_thinnest(cube *c, int worker) {
     for (int32_t i = 0; i < c->thin_count; i++) {
         double radius = 0;
-        ISO_TRY(refine(&radius, c, c->thin[i].at, worker));
+        ISO_TRY(refine(&radius, c, c->thin[i].at, 1, worker));
         c->smallest = fmin(c->smallest, 2 * radius);
     }
     return ISO_OK;
@@ -194,8 +204,6 @@ static iso_status find_spheres(cube *c, int side) {
                     continue;
                 if (side)
                     look_at_middle(c, at, radius, steep);
-                else
-                    c->largest = fmax(c->largest, 2 * radius);
                 ISO_TRY(ISO_GROW(c->sphere, c->capacity, c->count + 1));
                 c->sphere[c->count++] = (sphere){(float)radius, at};
             }
@@ -282,8 +290,7 @@ static iso_status look_closely(cube *c, int worker) {
     measure(c);
     for (int side = 0; side < 2; side++) {
         ISO_TRY(find_spheres(c, side));
-        if (side)
-            ISO_TRY(find_thinnest(c, worker));
+        ISO_TRY(side ? find_thinnest(c, worker) : find_largest(c, worker));
         memset(c->radius, 0, PAINTED * sizeof *c->radius);
         memset(c->has_sphere, 0, PAINTED);
         for (int64_t i = 0; i < c->count; i++)
