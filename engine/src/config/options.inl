@@ -265,17 +265,15 @@ ISO_OPTION(
     "Of voxel_file: a .vdb grid, or a folder or pattern (slice%03d.png) of grey pictures, that one cell is filled with.")
 ISO_OPTION(lattice_grid, TEXT, "", "", 0, 0, "Lattices",
            "A .vdb file whose value the expressions know as grid.")
-ISO_OPTION(
-    lattice_skin, NUMBER, "0", "mm", 0, 100, "Lattices",
-    "Of isoslice lattice: thickness of the solid skin around the lattice; 0 leaves it open.")
+ISO_OPTION(lattice_skin, NUMBER, "0", "mm", 0, 100, "Lattices",
+           "Of isoslice lattice: thickness of the solid skin around the lattice; 0 leaves it open.")
 ISO_OPTION(
     lattice_drain, NUMBERS, "", "mm", -10000, 10000, "Lattices",
     "Holes through the bottom of a skinned lattice to let powder or resin out, as X,Y,X,Y... from the middle of the part.")
 ISO_OPTION(lattice_drain_diameter, NUMBER, "3", "mm", 0.1, 100, "Lattices",
            "Diameter of the holes of lattice_drain.")
-ISO_OPTION(
-    lattice_open, BOOL, "0", "", 0, 1, "Lattices",
-    "Of isoslice lattice: refuse a part with pores that no powder can leave (exit code 8).")
+ISO_OPTION(lattice_open, BOOL, "0", "", 0, 1, "Lattices",
+           "Of isoslice lattice: refuse a part with pores that no powder can leave (exit code 8).")
 ISO_OPTION(top_solid_layers, INTEGER, "3", "", 0, 100000, "Solid layers, bridges, ironing",
            "Number of solid layers under every top surface; 0 for none.")
 ISO_OPTION(bottom_solid_layers, INTEGER, "3", "", 0, 100000, "Solid layers, bridges, ironing",

@@ -108,7 +108,10 @@ static void set_fill(iso_layer_settings *s, const iso_options *options, int32_t 
         s->sparse = fill_of(options, role, first, height, density);
         set_pattern(&s->sparse, options->fill_pattern, index);
     }
-    if (s->has_sparse && !full) {
+    bool closes_pores = settings_have_lattice(options) && options->perimeters == 0;
+    if (closes_pores) {
+        s->sparse.link_max = s->sparse.anchor = 0;
+    } else if (s->has_sparse && !full) {
         double width = iso_options_width(options, role, first, height);
         s->sparse.anchor = iso_units(iso_relative_of(options->infill_anchor, width));
         s->sparse.link_max = iso_units(iso_relative_of(options->infill_anchor_max, width));
