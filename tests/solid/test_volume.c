@@ -67,7 +67,7 @@ static int compare_points(const void *a, const void *b) {
 }
 
 typedef struct surface_facts {
-    double volume, area;
+    double volume;
     int64_t corners, edges, faces;
     int closed;
 } surface_facts;
@@ -154,11 +154,277 @@ static void test_ball_as_distance(void) {
     volume_free(volume);
 }
 
+static iso_status fill_everything(void *payload, float *value, iso_vec3 corner) {
+    for (int i = 0; i < 512; i++)
+        value[i] = -100;
+    return ISO_OK;
+}
+
+/* The voxels of a mask are counted one by one. */
+static void test_ball_as_mask(void) {
+    ball b = {.middle = {100, 3, -7}, .radius = 5, .voxel = 0.2};
+    iso_volume_plan plan = plan_ball(&b, ISO_VOLUME_SOLID);
+    iso_volume *volume;
+    if (!CHECK_OK(volume_build(&volume, &plan)))
+        return;
+    int64_t expected = 0;
+    for (int z = 0; z <= 60; z++)
+        for (int y = 0; y <= 60; y++)
+            for (int x = 0; x <= 60; x++) {
+                int64_t dx = x - 30, dy = y - 30, dz = z - 30;
+                /* 25^2: those on the sphere exactly may fall on either side */
+                expected += dx * dx + dy * dy + dz * dz < 625;
+            }
+    iso_volume_info info;
+    volume_info(&info, volume);
+    CHECK(info.active >= expected && info.active <= expected + 1000);
+    CHECK_EQUAL(0, info.is_distance);
+    CHECK_NEAR(0, info.background, 0);
+    iso_vec3 point[3] = {b.middle, {90, 3, -7}, {1e300, NAN, 0}};
+    double value[3];
+    CHECK_OK(volume_sample(value, volume, point, 3));
+    CHECK_NEAR(1, value[0], 0);
+    CHECK_NEAR(0, value[1], 0);
+    CHECK_NEAR(0, value[2], 0);
+    float *t;
+    int64_t count;
+    CHECK_OK(volume_surface(&t, &count, volume, 123));
+    surface_facts facts = look_at(t, count);
+    CHECK(facts.closed);
+    CHECK_NEAR(1, facts.volume / (4.0 / 3 * 3.14159265358979 * 125), 0.02);
+    iso_release(t);
+    volume_free(volume);
+}
+
+/* What a callback gives beyond the box is cut off, and what is full costs next to nothing. */
+static void test_box_cuts(void) {
+    for (int kind = 0; kind < 2; kind++) {
+        iso_volume_plan plan = {.min = {-3, 2, 1},
+                                .max = {17, 12, 8.5},
+                                .voxel = 0.25,
+                                .kind = kind == 0 ? ISO_VOLUME_SOLID : ISO_VOLUME_DISTANCE,
+                                .name = "box",
+                                .fill = fill_everything};
+        iso_volume *volume;
+        if (!CHECK_OK(volume_build(&volume, &plan)))
+            return;
+        iso_volume_info info;
+        volume_info(&info, volume);
+        if (kind == 0) {
+            CHECK_EQUAL(81 * 41 * 31, info.active);
+            CHECK_NEAR(-3, info.min.x, 1e-12);
+            CHECK_NEAR(8.5, info.max.z, 1e-12);
+            CHECK(info.bytes < 600000); /* its bits alone would be 13,000; a root's child is more */
+        }
+        float *t;
+        int64_t count;
+        CHECK_OK(volume_surface(&t, &count, volume, 0));
+        surface_facts facts = look_at(t, count);
+        CHECK(facts.closed);
+        /* a mask's surface lies half a voxel beyond the middles of its last ones */
+        double truth = kind == 0 ? 20.25 * 10.25 * 7.75 : 20 * 10 * 7.5;
+        CHECK_NEAR(1, facts.volume / truth, 0.005);
+        iso_release(t);
+        volume_free(volume);
+    }
+}
+
+static void test_bad_plans(void) {
+    ball b = {.radius = 2, .voxel = 0.5};
+    iso_volume_plan plan = plan_ball(&b, ISO_VOLUME_SOLID);
+    iso_volume *volume;
+    plan.voxel = 0;
+    CHECK_STATUS(ISO_BAD_CONFIG, volume_build(&volume, &plan));
+    CHECK(volume == NULL);
+    plan.voxel = NAN;
+    CHECK_STATUS(ISO_BAD_CONFIG, volume_build(&volume, &plan));
+    plan.voxel = 1e-6;
+    CHECK_STATUS(ISO_BAD_CONFIG, volume_build(&volume, &plan));
+    CHECK(strstr(iso_error_message(), "take larger ones"));
+    plan.voxel = 1e-9;
+    CHECK_STATUS(ISO_BAD_CONFIG, volume_build(&volume, &plan));
+    plan.voxel = 0.5;
+    plan.max.y = plan.min.y - 1;
+    CHECK_STATUS(ISO_BAD_CONFIG, volume_build(&volume, &plan));
+    plan = plan_ball(&b, ISO_VOLUME_DISTANCE);
+    plan.fill = fill_never;
+    CHECK_STATUS(ISO_UNSLICEABLE, volume_build(&volume, &plan));
+    CHECK(strstr(iso_error_message(), "own reason"));
+    CHECK(volume == NULL);
+}
+
+static unsigned char *load(const char *path, long *size) {
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        return NULL;
+    fseek(f, 0, SEEK_END);
+    *size = ftell(f);
+    fseek(f, 0, SEEK_SET);
+    unsigned char *bytes = malloc((size_t)*size + 1);
+    if (fread(bytes, 1, (size_t)*size, f) != (size_t)*size)
+        *size = 0;
+    fclose(f);
+    return bytes;
+}
+
+static void store(const char *path, const void *bytes, size_t size) {
+    FILE *f = fopen(path, "wb");
+    fwrite(bytes, 1, size, f);
+    fclose(f);
+}
+
+static void test_there_and_back(void) {
+    for (int kind = 0; kind < 2; kind++) {
+        ball b = {.middle = {4, 5, 60}, .radius = 3, .voxel = 0.25};
+        iso_volume_plan plan = plan_ball(&b, kind == 0 ? ISO_VOLUME_DISTANCE : ISO_VOLUME_SOLID);
+        iso_volume *volume, *back, *again;
+        if (!CHECK_OK(volume_build(&volume, &plan)))
+            return;
+        CHECK_OK(volume_write(volume, file("one.vdb")));
+        CHECK_OK(volume_build(&again, &plan));
+        CHECK_OK(volume_write(again, file("two.vdb")));
+        volume_free(again);
+        CHECK_OK(volume_read(&back, file("one.vdb"), "ball"));
+        CHECK_OK(volume_write(back, file("three.vdb")));
+        long size[3] = {0};
+        unsigned char *bytes[3] = {load(file("one.vdb"), &size[0]), load(file("two.vdb"), &size[1]),
+                                   load(file("three.vdb"), &size[2])};
+        CHECK(size[0] == size[1] && memcmp(bytes[0], bytes[1], (size_t)size[0]) == 0);
+        CHECK(size[0] > 1000 && size[2] > 1000);
+        for (int i = 0; i < 3; i++)
+            free(bytes[i]);
+        iso_volume_info was, is;
+        volume_info(&was, volume);
+        volume_info(&is, back);
+        CHECK_EQUAL(was.active, is.active);
+        CHECK_EQUAL(was.is_distance, is.is_distance);
+        CHECK_NEAR(was.voxel, is.voxel, 0);
+        CHECK_NEAR(was.min.x, is.min.x, 0);
+        CHECK_NEAR(was.max.z, is.max.z, 0);
+        for (int i = 0; i < 1000; i++) {
+            iso_vec3 p = {0.8 * (i % 10), 1 + 0.8 * (i / 10 % 10), 56 + 0.8 * (i / 100)};
+            double a, c;
+            CHECK_OK(volume_sample(&a, volume, &p, 1));
+            CHECK_OK(volume_sample(&c, back, &p, 1));
+            CHECK(a == c);
+        }
+        volume_free(back);
+        CHECK_OK(volume_read(&back, file("one.vdb"), NULL));
+        volume_free(back);
+        CHECK_STATUS(ISO_UNREADABLE, volume_read(&back, file("one.vdb"), "density"));
+        CHECK(strstr(iso_error_message(), "\"ball\"") != NULL);
+        CHECK(back == NULL);
+        CHECK_STATUS(ISO_NOT_WRITTEN, volume_write(volume, "/nowhere/at/all.vdb"));
+        volume_free(volume);
+    }
+    iso_volume *volume;
+    CHECK_STATUS(ISO_UNREADABLE, volume_read(&volume, file("missing.vdb"), NULL));
+    CHECK(strstr(iso_error_message(), "missing.vdb") != NULL);
+    CHECK_STATUS(ISO_UNREADABLE, volume_read(&volume, folder, NULL));
+    store(file("text.vdb"), "solid cube\n", 11);
+    CHECK_STATUS(ISO_UNREADABLE, volume_read(&volume, file("text.vdb"), NULL));
+    store(file("empty.vdb"), "", 0);
+    CHECK_STATUS(ISO_UNREADABLE, volume_read(&volume, file("empty.vdb"), NULL));
+}
+
+static uint64_t seed = 88172645463325252u;
+
+static uint64_t next_random(void) {
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    return seed ^= seed << 17;
+}
+
+/* Cut off and flipped: any status, never a crash. What can be read can be used. */
+static void test_damaged_files(void) {
+    static int failed, read;
+    for (int kind = 0; kind < 2; kind++) {
+        ball b = {.middle = {4, 5, 6}, .radius = 3, .voxel = 0.5};
+        iso_volume_plan plan = plan_ball(&b, kind == 0 ? ISO_VOLUME_DISTANCE : ISO_VOLUME_SOLID);
+        iso_volume *volume;
+        if (!CHECK_OK(volume_build(&volume, &plan)))
+            return;
+        CHECK_OK(volume_write(volume, file("sound.vdb")));
+        volume_free(volume);
+        long size = 0;
+        unsigned char *bytes = load(file("sound.vdb"), &size);
+        unsigned char *bad = malloc((size_t)size);
+        const char *path = file("bad.vdb");
+        for (int i = 0; i < 60; i++) {
+            store(path, bytes, (size_t)(i * (size - 1) / 59));
+            CHECK_STATUS(ISO_UNREADABLE, volume_read(&volume, path, NULL));
+        }
+        for (int i = 0; i < 1200; i++) {
+            memcpy(bad, bytes, (size_t)size);
+            int flips = 1 + (int)(next_random() % 4);
+            for (int k = 0; k < flips; k++) {
+                /* heads more often than voxels */
+                long range = i % 2 == 0 ? (size < 1000 ? size : 1000) : size;
+                bad[next_random() % (uint64_t)range] ^= (unsigned char)(1 << next_random() % 8);
+            }
+            store(path, bad, (size_t)size);
+            iso_status status = volume_read(&volume, path, NULL);
+            if (status != ISO_OK) {
+                failed++;
+                CHECK(status == ISO_UNREADABLE || status == ISO_NO_MEMORY);
+                CHECK(volume == NULL);
+                continue;
+            }
+            read++;
+            double value;
+            CHECK_OK(volume_sample(&value, volume, &b.middle, 1));
+            volume_free(volume);
+        }
+        free(bad);
+        free(bytes);
+    }
+    CHECK(failed > 100 && read > 100);
+}
+
+static void test_out_of_memory(void) {
+    ball b = {.middle = {4, 5, 6}, .radius = 2, .voxel = 0.5};
+    iso_volume_plan plan = plan_ball(&b, ISO_VOLUME_DISTANCE);
+    for (int64_t n = 0; n < 20; n++) {
+        iso_volume *volume;
+        float *t;
+        int64_t count;
+        iso_fail_allocation_after(n);
+        iso_status status = volume_build(&volume, &plan);
+        if (status != ISO_OK) {
+            iso_fail_allocation_after(-1);
+            CHECK_EQUAL(ISO_NO_MEMORY, status);
+            CHECK(volume == NULL);
+            continue;
+        }
+        status = volume_surface(&t, &count, volume, 0);
+        if (status == ISO_OK)
+            iso_release(t);
+        iso_status written = volume_write(volume, file("memory.vdb"));
+        iso_fail_allocation_after(-1);
+        CHECK(status == ISO_OK || status == ISO_NO_MEMORY);
+        CHECK(written == ISO_OK || written == ISO_NO_MEMORY);
+        volume_free(volume);
+    }
+}
+
+static void remove_folder(void) {
+    static const char *const names[] = {"one.vdb", "two.vdb",   "three.vdb", "text.vdb",
+                                        "bad.vdb", "empty.vdb", "sound.vdb", "memory.vdb"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        unlink(file(names[i]));
+    CHECK(rmdir(folder) == 0); /* and no half-written file in it */
+}
+
 int main(void) {
     if (!mkdtemp(folder))
         return 1;
     RUN(test_ball_as_distance);
-    (void)file;
-    (void)fill_never;
+    RUN(test_ball_as_mask);
+    RUN(test_box_cuts);
+    RUN(test_bad_plans);
+    RUN(test_there_and_back);
+    RUN(test_damaged_files);
+    RUN(test_out_of_memory);
+    remove_folder();
     return check_verdict();
 }

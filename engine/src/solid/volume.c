@@ -125,6 +125,12 @@ static iso_status finish(iso_volume *volume) {
 static iso_status check_surface(const iso_volume_surface *surface) {
     if (!(surface->outer > 0 && surface->inner > 0))
         return iso_fail(ISO_BAD_CONFIG, "distances must be wanted for more than 0 mm");
+    for (int64_t i = 0; i < 3 * surface->count; i++) {
+        const iso_vec3 *c = &surface->corner[i];
+        if (!(c->x - c->x == 0 && c->y - c->y == 0 && c->z - c->z == 0))
+            return iso_fail(ISO_BAD_CONFIG, "corner %d of triangle %lld is nowhere", (int)(i % 3),
+                            (long long)(i / 3));
+    }
     iso_vec3 min = {0, 0, 0}, max = {0, 0, 0};
     distance_box(&min, &max, surface);
     return check_box(&min, &max, surface->voxel);

@@ -33,8 +33,10 @@ typedef struct iso_volume_surface {
     int64_t count;
     double voxel;
     double outer, inner;   /* mm; distances are known this far outside and inside */
-    volume_inside *inside; /* tells the sign, whatever the triangles' sense; NULL: by how often
-                            * shells turn around a voxel, which needs closed ones */
+    volume_inside *inside; /* tells the sign, whatever the triangles' sense, and is asked about one
+                            * voxel of many that no triangle comes between: where the surface has
+                            * holes, take 0 everywhere and find the sign otherwise. NULL: by how
+                            * often shells turn around a voxel, which needs closed ones */
     void *payload;
 } iso_volume_surface;
 

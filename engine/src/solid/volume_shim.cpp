@@ -237,8 +237,12 @@ class file_buffer : public std::streambuf {
     file_buffer &operator=(const file_buffer &) = delete;
     ~file_buffer() override { std::fclose(file_); }
 
-    /* Blocks are compressed by Blosc from now on, or not. */
-    void watch(const std::istream &stream) { stream_ = &stream; }
+    /* What comes next: names and the like, or voxels, in blocks that are compressed if not 0. */
+    void expect_names() { compression_ = voxels_ = 0; }
+    void expect_voxels(uint32_t compression, bool eight_bytes) {
+        voxels_ = eight_bytes ? 8 : 4;
+        compression_ = compression;
+    }
 
   protected:
     std::streamsize xsgetn(char *bytes, std::streamsize count) override {
@@ -288,17 +292,41 @@ class file_buffer : public std::streambuf {
     }
 
   private:
-    /* A compressed block is its size in 8 bytes and then itself. Blosc believes the size that the
-     * block's own head gives and would read on beyond its end: the two must be equal. */
+    static void refuse_size() {
+        throw refusal(ISO_UNREADABLE, "has a block of the wrong size; it is damaged");
+    }
+
+    /* OpenVDB takes memory for as many bytes as it is told to come. So sizes of what can't be there
+     * are found here: of a text, 4 bytes (4 bytes after a size of 4 are a number), and of a
+     * compressed block, 8 bytes where no voxel has as many. */
+    void check_size(const char *bytes, std::streamsize count) {
+        uint32_t text = 0;
+        if (voxels_ == 0 && count == 4) {
+            std::memcpy(&text, bytes, 4);
+            if (!last_was_four_ && text > size_ - position_)
+                refuse_size();
+        }
+        last_was_four_ = text == 4;
+        constexpr uint32_t compressed = openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ZIP;
+        if (voxels_ == 4 && count == 8 && (compression_ & compressed)) {
+            int64_t block = 0;
+            std::memcpy(&block, bytes, 8);
+            if (block > size_ - position_)
+                refuse_size();
+        }
+    }
+
+    /* Blosc believes the size that a compressed block's own head gives and would read on beyond its
+     * end: it must be equal to the size before the block. */
     void check_block(const char *bytes, std::streamsize count) {
-        if (last_count_ == 8 && last_value_ == count && stream_ &&
-            (openvdb::io::getDataCompression(const_cast<std::istream &>(*stream_)) &
-             openvdb::io::COMPRESS_BLOSC)) {
+        check_size(bytes, count);
+        if (last_count_ == 8 && last_value_ == count &&
+            (compression_ & openvdb::io::COMPRESS_BLOSC)) {
             int32_t own = -1;
             if (count >= 16)
                 std::memcpy(&own, bytes + 12, sizeof own);
             if (own != count)
-                throw refusal(ISO_UNREADABLE, "has a block of the wrong size; it is damaged");
+                refuse_size();
         }
         last_count_ = count;
         if (count == 8)
@@ -309,7 +337,9 @@ class file_buffer : public std::streambuf {
     std::streamoff size_ = 0, position_ = 0;
     std::streamsize last_count_ = 0;
     int64_t last_value_ = 0;
-    const std::istream *stream_ = nullptr;
+    bool last_was_four_ = false;
+    int voxels_ = 0; /* bytes of each; 0: names */
+    uint32_t compression_ = 0;
 };
 
 bool is_known(const std::string &type) {
@@ -318,24 +348,18 @@ bool is_known(const std::string &type) {
            type == openvdb::BoolGrid::gridType() || type == MaskGrid::gridType();
 }
 
-/* The reading half of OpenVDB's io::File, on a stream of ours. */
+/* The reading half of OpenVDB's io::File, on a stream of ours and step by step. */
 class reader : public openvdb::io::Archive {
   public:
-    openvdb::GridBase::Ptr read(file_buffer *buffer, const char *name) {
-        std::istream stream(buffer);
-        stream.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
-        openvdb::io::StreamMetadata::Ptr facts(new openvdb::io::StreamMetadata);
-        openvdb::io::setStreamMetadataPtr(stream, facts, false);
-        readHeader(stream);
-        setFormatVersion(stream);
-        setLibraryVersion(stream);
-        setDataCompression(stream);
-        buffer->watch(stream);
-        openvdb::MetaMap meta;
-        meta.readMeta(stream);
+    explicit reader(file_buffer *buffer) : buffer_(buffer), stream_(buffer) {
+        stream_.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
+    }
+
+    openvdb::GridBase::Ptr read(const char *name) {
+        read_head();
         std::string others;
-        for (int32_t left = readGridCount(stream); left > 0; left--)
-            if (openvdb::GridBase::Ptr grid = next(stream, others, name))
+        for (int32_t left = readGridCount(stream_); left > 0; left--)
+            if (openvdb::GridBase::Ptr grid = next(others, name))
                 return grid;
         if (name)
             throw refusal(ISO_UNREADABLE, std::string("has no grid of numbers \"") + name +
@@ -345,32 +369,82 @@ class reader : public openvdb::io::Archive {
     }
 
   private:
-    openvdb::GridBase::Ptr next(std::istream &stream, std::string &others, const char *name) {
+    void read_head() {
+        int64_t magic = 0;
+        uint32_t version = 0;
+        stream_.read(reinterpret_cast<char *>(&magic), sizeof magic);
+        if (magic != openvdb::OPENVDB_MAGIC)
+            throw refusal(ISO_UNREADABLE, "is no .vdb file");
+        stream_.read(reinterpret_cast<char *>(&version), sizeof version);
+        if (version > openvdb::OPENVDB_FILE_VERSION ||
+            version < openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION)
+            throw refusal(ISO_UNREADABLE,
+                          "is of format " + std::to_string(version) + "; only 222 to " +
+                              std::to_string(openvdb::OPENVDB_FILE_VERSION) + " are understood");
+        stream_.seekg(0);
+        facts_.reset(new openvdb::io::StreamMetadata);
+        openvdb::io::setStreamMetadataPtr(stream_, facts_, false);
+        readHeader(stream_);
+        setFormatVersion(stream_);
+        setLibraryVersion(stream_);
+        setDataCompression(stream_);
+        openvdb::MetaMap().readMeta(stream_);
+    }
+
+    openvdb::GridBase::Ptr next(std::string &others, const char *name) {
         openvdb::io::GridDescriptor descriptor;
-        const std::streamoff start = stream.tellg();
-        openvdb::GridBase::Ptr grid = descriptor.read(stream);
-        const std::string own = descriptor.gridName();
-        const bool wanted = is_known(descriptor.gridType()) && (!name || own == name);
+        const std::streamoff start = stream_.tellg();
+        openvdb::GridBase::Ptr grid = descriptor.read(stream_);
+        const std::string own = descriptor.gridName(), type = descriptor.gridType();
+        const bool wanted = grid && is_known(type) && (!name || own == name);
         if (wanted && descriptor.isInstance())
             throw refusal(ISO_UNREADABLE, "grid \"" + own + "\" has its values in \"" +
                                               descriptor.instanceParentName() +
                                               "\"; name that one");
         if (others.size() < 200)
-            others += (others.empty() ? "\"" : ", \"") + own + "\" (" + descriptor.gridType() + ")";
+            others += (others.empty() ? "\"" : ", \"") + own + "\" (" + type + ")";
         if (!wanted && inputHasGridOffsets()) {
             if (descriptor.getEndPos() <= start)
                 throw refusal(ISO_UNREADABLE, "is damaged");
-            descriptor.seekToEnd(stream);
+            descriptor.seekToEnd(stream_);
             return nullptr;
         }
-        if (!grid)
-            throw refusal(ISO_UNREADABLE, "grid \"" + own + "\" is of the unknown type " +
-                                              descriptor.gridType() + " and can't be passed over");
+        if (!grid || !is_known(type))
+            throw refusal(ISO_UNREADABLE,
+                          "grid \"" + own + "\" is of type " + type + " and can't be passed over");
         if (inputHasGridOffsets())
-            descriptor.seekToGrid(stream);
-        readGrid(grid, descriptor, stream);
+            descriptor.seekToGrid(stream_);
+        read_grid(grid.get(), type);
         return wanted ? grid : nullptr;
     }
+
+    void read_grid(openvdb::GridBase *grid, const std::string &type) {
+        readGridCompression(stream_);
+        facts_.reset(new openvdb::io::StreamMetadata(*facts_));
+        facts_->setHalfFloat(grid->saveFloatAsHalf());
+        openvdb::io::setStreamMetadataPtr(stream_, facts_, false);
+        openvdb::io::setGridClass(stream_, openvdb::GRID_UNKNOWN);
+        openvdb::io::setGridBackgroundValuePtr(stream_, nullptr);
+        grid->readMeta(stream_);
+        openvdb::io::setGridClass(stream_, grid->getGridClass());
+        grid->readTransform(stream_);
+        int32_t buffers = 0;
+        const std::streamoff start = stream_.tellg();
+        stream_.read(reinterpret_cast<char *>(&buffers), sizeof buffers);
+        if (buffers != 1)
+            throw refusal(ISO_UNREADABLE, "has more than one value in a voxel, or is damaged");
+        stream_.seekg(start);
+        buffer_->expect_voxels(openvdb::io::getDataCompression(stream_),
+                               type == openvdb::DoubleGrid::gridType() ||
+                                   type == openvdb::Int64Grid::gridType());
+        grid->readTopology(stream_);
+        grid->readBuffers(stream_);
+        buffer_->expect_names();
+    }
+
+    file_buffer *buffer_;
+    std::istream stream_;
+    openvdb::io::StreamMetadata::Ptr facts_;
 };
 
 template <typename grid_type> FloatGrid::Ptr numbers(const openvdb::GridBase::Ptr &base) {
@@ -419,7 +493,7 @@ iso_status grid_read(volume_grid **result, const char *path, const char *name, c
     return guarded(message, ISO_UNREADABLE, [&] {
         start_openvdb();
         file_buffer buffer(path);
-        openvdb::GridBase::Ptr base = reader().read(&buffer, name);
+        openvdb::GridBase::Ptr base = reader(&buffer).read(name);
         std::unique_ptr<volume_grid> grid(new volume_grid);
         take_transform(grid.get(), base->transform());
         const std::string type = base->type();
@@ -651,12 +725,16 @@ iso_status grid_surface(volume_triangles *triangles, const volume_grid *grid, do
         std::vector<openvdb::Vec3s> points;
         std::vector<openvdb::Vec3I> left; /* none: nothing is merged */
         std::vector<openvdb::Vec4I> quads;
+        /* OpenVDB takes what isn't a level set by its own account for fog, full of large values */
+        bool is_fog = false;
         if (grid->mask) {
             FloatGrid::Ptr half = FloatGrid::create(FloatTree::Ptr(
                 new FloatTree(grid->mask->tree(), 1.0f, -1.0f, openvdb::TopologyCopy())));
             half->setTransform(grid->mask->transform().copy());
+            half->setGridClass(openvdb::GRID_LEVEL_SET);
             openvdb::tools::volumeToMesh(*half, points, left, quads, 0.0);
         } else {
+            is_fog = grid->number->getGridClass() != openvdb::GRID_LEVEL_SET;
             openvdb::tools::volumeToMesh(*grid->number, points, left, quads, level);
         }
         const size_t count = 2 * quads.size() + left.size();
@@ -664,10 +742,11 @@ iso_status grid_surface(volume_triangles *triangles, const volume_grid *grid, do
         if (!corner)
             throw std::bad_alloc();
         float *end = corner;
-        for (const openvdb::Vec4I &quad : quads)
-            end = put_quad(end, points, quad);
+        for (const openvdb::Vec4I &q : quads)
+            end = put_quad(end, points, is_fog ? openvdb::Vec4I(q[3], q[2], q[1], q[0]) : q);
         for (const openvdb::Vec3I &t : left)
-            end = put_triangle(end, points[t[2]], points[t[1]], points[t[0]]);
+            end = put_triangle(end, points[t[is_fog ? 0 : 2]], points[t[1]],
+                               points[t[is_fog ? 2 : 0]]);
         triangles->corner = corner;
         triangles->count = (end - corner) / 9;
     });
