@@ -40,16 +40,19 @@ typedef enum iso_lattice_pattern {
     ISO_LATTICE_COUNT
 } iso_lattice_pattern;
 
-typedef enum iso_lattice_map { /* what u, v, w are cells of */
-                               ISO_LATTICE_MAP_XYZ,
-                               ISO_LATTICE_MAP_CYLINDER, /* arc around the z axis, z, radius; the
-                                                          * arc is stretched so that a whole number
-                                                          * of cells goes around */
-                               ISO_LATTICE_MAP_SPHERE, /* arcs of longitude and latitude, radius */
-                               ISO_LATTICE_MAP_SKIN,   /* x, y, distance to the skin */
-                               ISO_LATTICE_MAP_SKIN_CYLINDER, /* arc around the z axis, z, distance
-                                                                 to the skin */
-                               ISO_LATTICE_MAP_COUNT
+/* What u, v, w are cells of. Lengths are divided by the size of a cell; where that depends on one
+ * of x, y, z, r and skin alone, and the map has it, cells are counted along it: each is as long as
+ * was asked. Arcs have a whole number of cells around, as many as fit at the mean radius of the
+ * part's volume, so that nothing is torn; they are longer outside and shorter inside. */
+typedef enum iso_lattice_map {
+    ISO_LATTICE_MAP_XYZ,
+    ISO_LATTICE_MAP_CYLINDER,      /* arc around the z axis, z, radius */
+    ISO_LATTICE_MAP_SPHERE,        /* arcs of longitude and latitude around the middle of the box,
+                                    * radius; cells get narrow at the poles */
+    ISO_LATTICE_MAP_SKIN,          /* x, y, distance to the skin: for what is more level than steep;
+                                    * on an upright wall two of them are the same */
+    ISO_LATTICE_MAP_SKIN_CYLINDER, /* arc around the z axis, z, distance to the skin: for walls */
+    ISO_LATTICE_MAP_COUNT
 } iso_lattice_map;
 
 /* Places where a lattice is void whatever its pattern: pieces that hold to nothing. A grid of
@@ -78,7 +81,7 @@ typedef struct iso_lattice_options {
     const char *file;           /* of VOXEL_FILE; else not looked at */
     const char *grid;           /* a .vdb file for the variable `grid`; "" is none */
     const iso_lattice_cut *cut; /* NULL: none */
-    double skin_voxel; /* mm; the distance to the skin is sampled so finely; 0: box / 64 */
+    double skin_voxel;          /* mm; the distance to the skin is sampled so finely; 0: box / 64 */
 } iso_lattice_options;
 
 /* gyroid_sheet, cells of 5 mm, 20 percent, x y z. */

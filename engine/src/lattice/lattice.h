@@ -33,7 +33,8 @@ typedef struct iso_lattice_plane {
 
 /* A piece of it, columns first .. first + count - 1 of one row: `distance` to the skeleton in mm,
  * with its sign, and `half`: material is where distance (|distance| for cells with sides) <= half.
- * Void everywhere: half is -HUGE_VAL; solid: HUGE_VAL. Any number of threads at once; allocates
+ * Void everywhere: half is -HUGE_VAL; solid: HUGE_VAL; where density is no number, void. `distance`
+ * is always finite. A node has the same bits in any piece. Any number of threads at once; allocates
  * nothing. */
 void lattice_sample_row(double *distance, double *half, const iso_lattice *lattice,
                         const iso_lattice_plane *plane, int32_t row, int32_t first, int32_t count);
