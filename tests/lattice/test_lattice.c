@@ -99,6 +99,7 @@ static void test_mistakes(void) {
         {"x", "20",
          "lattice_cell is -20 mm at x = -20, y = -15, z = 0; it must be 0.2 to 100000 mm"},
         {"sqrt(x)", "20", "lattice_cell is "},
+        {"0.3 + 0.1 * hypot(x, z)", "20", "lattice_cell grows too fast at x = -20, y = -15, z = "},
         {"z > 3.001 ? z < 3.1 ? 0 : 2 : 2", "20", "lattice_cell is 0 mm at z = 3.0"},
     };
     for (int i = 0; i < (int)(sizeof mistake / sizeof *mistake); i++) {
@@ -117,6 +118,9 @@ static void test_mistakes(void) {
     CHECK_STATUS(ISO_BAD_CONFIG, lattice_new(&lattice, &options, &box, 1));
     options = iso_lattice_defaults();
     CHECK_STATUS(ISO_UNSLICEABLE, lattice_new(&lattice, &options, &box, 0));
+    options.cell = "z <= 10 ? 2 : x < 0 ? 3 : 4"; /* steps are no growth */
+    CHECK_OK(lattice_new(&lattice, &options, &box, 1));
+    lattice_free(lattice);
 }
 
 static void test_no_memory(void) {

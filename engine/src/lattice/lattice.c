@@ -37,8 +37,43 @@ static iso_status check_size(const iso_lattice *lattice, double size, iso_vec3 a
 
 enum { CHECKED = 33 }; /* places along each side of the part's box */
 
+/* Where cells aren't counted along what their size depends on, x, y and z are divided by it; away
+ * from the middle they are then as much longer as 1 is more than 1 - (p grad size) / size. */
+static bool is_divided(const iso_lattice *lattice, int32_t kind) {
+    int32_t only = grading_only_variable(&lattice->size);
+    return kind == ISO_LATTICE_MAP_XYZ &&
+           (only == -2 || only == GRADING_SKIN || only == GRADING_GRID);
+}
+
+static iso_status check_growth(iso_lattice *lattice, iso_places *places, const double *size,
+                               int32_t count) {
+    const double farther = 1e-6, least = 0.2, jump = 100; /* steeper than that it's a step */
+    double grown[CHECKED];
+    for (int k = GRADING_X; k <= GRADING_Z; k++)
+        for (int32_t i = 0; i < count; i++)
+            places->value[k][i] *= 1 + farther;
+    space_know(places, &lattice->space, lattice->wanted, count);
+    grading_evaluate(grown, &lattice->size, places->variable, count);
+    for (int32_t i = 0; i < count; i++) {
+        double shorter = 1 - (grown[i] - size[i]) / (size[i] * farther);
+        bool is_part = !lattice->space.skin || places->value[GRADING_SKIN][i] >= 0;
+        if (fabs(shorter) > jump)
+            continue;
+        if (shorter < least && is_part)
+            return iso_fail(ISO_BAD_CONFIG,
+                            "lattice_cell grows too fast at x = %.4g, y = %.4g, z = %.4g: let it "
+                            "change more slowly, or with one of x, y, z and r alone",
+                            places->value[GRADING_X][i], places->value[GRADING_Y][i],
+                            places->value[GRADING_Z][i]);
+        if (shorter > 1 && is_part)
+            lattice->smallest = fmin(lattice->smallest, fmax(size[i] / shorter, size[i] / 4));
+    }
+    return ISO_OK;
+}
+
 /* One row along x of what is checked. */
-static iso_status check_row(iso_lattice *lattice, iso_places *places, int32_t j, int32_t k) {
+static iso_status check_row(iso_lattice *lattice, iso_places *places, int32_t kind, int32_t j,
+                            int32_t k) {
     const iso_space *space = &lattice->space;
     double size[CHECKED], *x = places->value[GRADING_X], *skin = places->value[GRADING_SKIN];
     iso_vec3 at = {0, space->min.y + (space->max.y - space->min.y) * j / (CHECKED - 1),
@@ -57,10 +92,10 @@ static iso_status check_row(iso_lattice *lattice, iso_places *places, int32_t j,
         ISO_TRY(check_size(lattice, size[i], at));
         lattice->smallest = fmin(lattice->smallest, size[i]);
     }
-    return ISO_OK;
+    return is_divided(lattice, kind) ? check_growth(lattice, places, size, CHECKED) : ISO_OK;
 }
 
-static iso_status check_sizes(iso_lattice *lattice) {
+static iso_status check_sizes(iso_lattice *lattice, int32_t kind) {
     lattice->smallest = HUGE_VAL;
     if (!lattice->size.expression) {
         lattice->smallest = lattice->size.value;
@@ -71,7 +106,7 @@ static iso_status check_sizes(iso_lattice *lattice) {
     iso_status status = ISO_OK;
     for (int32_t k = 0; k < CHECKED && status == ISO_OK; k++)
         for (int32_t j = 0; j < CHECKED && status == ISO_OK; j++)
-            status = check_row(lattice, places, j, k);
+            status = check_row(lattice, places, kind, j, k);
     iso_release(places);
     if (status == ISO_OK && lattice->smallest == HUGE_VAL) /* thinner than the grid of places */
         lattice->smallest = least_cell;
@@ -114,7 +149,7 @@ static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
     ISO_TRY(grading_make(&lattice->density, options->density, "lattice_density"));
     lattice->wanted = find_wanted(lattice, options->map);
     ISO_TRY(space_make(&lattice->space, options, lattice->wanted, mesh, count));
-    ISO_TRY(check_sizes(lattice));
+    ISO_TRY(check_sizes(lattice, options->map));
     ISO_TRY(cell_make(&lattice->cell, options));
     ISO_TRY(map_make(&lattice->map, options->map, &lattice->space, &lattice->size,
                      lattice->cell.repeat[0], least_cell));
