@@ -319,6 +319,31 @@ static void test_lattice_of_tetrahedra(void) {
     check_shape(&shape);
 }
 
+/* On the surface it is the side above that counts, then the one behind, then the one to the right:
+ * what a slice that takes corners on its level as below has. */
+static void test_sides_that_count(void) {
+    test_shape shape = {0};
+    iso_mesh mesh;
+    shape_box(&shape, (iso_vec3){0}, (iso_vec3){8, 8, 8}, 1);
+    shape_mesh(&mesh, &shape);
+    iso_vec3 point[9] = {{4, 4, 0}, {4, 4, 8}, {4, 0, 4}, {4, 8, 4}, {0, 4, 4},
+                         {8, 4, 4}, {0, 0, 0}, {8, 0, 0}, {0, 8, 0}};
+    int32_t winding[9];
+    uint8_t on[9];
+    iso_solid *solid;
+    if (CHECK_OK(iso_solid_new(&solid, &mesh, 1))) {
+        iso_winding_options options = {.directions = 6};
+        CHECK_OK(iso_solid_winding(winding, on, solid, point, 9, &options));
+        for (int i = 0; i < 9; i++) {
+            CHECK_EQUAL(i < 7 && i % 2 == 0, winding[i]);
+            CHECK_EQUAL(1, on[i]);
+        }
+        iso_solid_free(solid);
+    }
+    shape_mesh_free(&mesh);
+    shape_free(&shape);
+}
+
 static void test_analytic(void) {
     enum { COUNT = 4000 };
     static iso_vec3 point[COUNT];
@@ -514,6 +539,7 @@ int main(int count, char **argument) {
     RUN(test_boxes);
     RUN(test_spindles);
     RUN(test_lattice_of_tetrahedra);
+    RUN(test_sides_that_count);
     RUN(test_analytic);
     RUN(test_fine);
     RUN(test_nothing);

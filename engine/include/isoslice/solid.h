@@ -3,9 +3,9 @@
  * The surface is the meshes' triangles with corners rounded to a grid of 2^-k mm, fine enough that
  * the models' box spans 2^30 steps at least (0.1 nm for a part of 100 mm; corners of an STL file
  * larger than a millimetre don't move at all). Points are rounded to the same grid. The winding
- * number of a point is then an integer that is computed exactly: rays find what may be hit, floats
- * decide what lies clear of every edge, integers the rest, with symbolic perturbation where a ray
- * meets an edge or a corner (Edelsbrunner and Muecke 1990). */
+ * number of a point is then an integer that is computed exactly: a tree of boxes says which
+ * triangles a ray may meet, integers decide, with symbolic perturbation where it meets an edge or a
+ * corner (Edelsbrunner and Muecke 1990). */
 #ifndef ISOSLICE_SOLID_H
 #define ISOSLICE_SOLID_H
 
@@ -27,9 +27,10 @@ typedef struct iso_winding_options {
 } iso_winding_options;
 
 /* winding[i] of point[i], mm: how often the surface turns around it, outward-facing triangles
- * counting 1. A point that is exactly on the surface gets the winding number of some point next to
- * it, and on_surface[i] = 1 (may be NULL). options may be NULL: one direction. The same on every
- * machine; any number of threads at once on one solid. */
+ * counting 1. A point that is exactly on the surface gets the winding number of x + e^3, y + e^2,
+ * z + e next to it, e > 0 below any bound, as a slice at z has it, and on_surface[i] = 1 (may be
+ * NULL). options may be NULL: one direction, the shortest way out. The same on every machine; any
+ * number of threads at once on one solid. */
 ISO_API iso_status iso_solid_winding(int32_t *winding, uint8_t *on_surface, const iso_solid *solid,
                                      const iso_vec3 *point, int64_t count,
                                      const iso_winding_options *options) ISO_MUST_CHECK;

@@ -1,4 +1,4 @@
-/* The point p that is asked for is moved by (e, e^2, e^3) with e > 0 below any bound: the point
+/* The point p that is asked for is moved by (e^3, e^2, e) with e > 0 below any bound: the point
  * p' next to it lies on no triangle's plane, and a ray along an axis from it meets no edge and no
  * corner (Edelsbrunner and Muecke, Simulation of Simplicity, 1990). Orientations are polynomials
  * of e whose first coefficient that is not zero has the sign. They are linear in the point, so
@@ -67,7 +67,7 @@ static int height_sign_moved(const int32_t *corner, const int32_t *point) {
         return height;
     int64_t normal[3];
     normal_of(normal, corner);
-    for (int k = 0; k < 3; k++)
+    for (int k = 2; k >= 0; k--)
         if (normal[k])
             return -sign(normal[k]);
     return 0;
@@ -82,7 +82,7 @@ int inside_crossing(const int32_t corner[9], const int32_t point[3], int directi
     if (backward ? least > p : most < p)
         return 0;
 
-    int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1, u_first = u < v;
+    int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1, u_first = u > v;
     int64_t au = (int64_t)corner[u] - point[u], av = (int64_t)corner[v] - point[v];
     int64_t bu = (int64_t)corner[3 + u] - point[u], bv = (int64_t)corner[3 + v] - point[v];
     int ab = side(au, av, bu, bv, u_first);
