@@ -30,6 +30,7 @@ typedef struct work {
     uint8_t *near;  /* [size^3] samples that a seed is made for; then free */
     seed *seeds;    /* by block */
     int32_t *first; /* [blocks^3 + 1] seeds of a block */
+    uint64_t *row;  /* [blocks^2] bit x: is there a seed in block x; repeated to fill 64 bits */
     int32_t count;
     four *square;     /* [count] candidates: squares of the way in x to the four samples of a row */
     float *x, *y, *z; /* [count] their place, from the block's first sample */
@@ -194,14 +195,27 @@ static iso_status make_seeds(work *w) {
     return ISO_OK;
 }
 
+static void mark_rows(work *w) {
+    for (int32_t r = 0; r < w->blocks * w->blocks; r++) {
+        const int32_t *first = w->first + (int64_t)r * w->blocks;
+        w->row[r] = 0;
+        for (int32_t bit = 0; bit < 64; bit++) {
+            int32_t x = bit & (w->blocks - 1);
+            w->row[r] |= (uint64_t)(first[x] < first[x + 1]) << bit;
+        }
+    }
+}
+
 /* ---- Nearest seeds ---- */
 
 typedef struct hunt {
     int32_t block[3];
     int32_t count;
-    int32_t best;  /* candidate nearest to the middle */
-    float nearest; /* square of its way from there */
-    float most;    /* square; what is further is no candidate */
+    int32_t best;    /* candidate nearest to the middle */
+    float nearest;   /* square of its way from there */
+    float most;      /* square; what is further is no candidate */
+    int32_t last[3]; /* the block that `nearest` and `best` were last found for */
+    int32_t is_first;
 } hunt;
 
 static void take_block(work *w, hunt *h, int32_t x, int32_t y, int32_t z) {
@@ -245,14 +259,24 @@ static int32_t gap(int32_t x, int32_t y, int32_t z) {
     return square;
 }
 
-static void take_ring(work *w, hunt *h, int32_t ring) {
-    for (int32_t z = -ring; z <= ring; z++)
-        for (int32_t y = -ring; y <= ring; y++) {
-            int32_t on = abs(z) == ring || abs(y) == ring;
-            for (int32_t x = -ring; x <= ring; x += on || ring == 0 ? 1 : 2 * ring)
-                if ((float)gap(x, y, z) <= h->most)
-                    take_block(w, h, x, y, z);
-        }
+/* The blocks of a row that hold seeds and may be near enough, `y` and `z` rows on. */
+static void take_row(work *w, hunt *h, int32_t y, int32_t z) {
+    int32_t mask = w->blocks - 1, half = w->blocks / 2;
+    float left = h->most - (float)gap(0, y, z);
+    if (left < 0)
+        return;
+    int32_t reach = (int32_t)((sqrtf(left) + 0.5f * BLOCK) / BLOCK);
+    int32_t from = reach < half ? -reach : -half, to = reach < half ? reach : half - 1;
+    uint64_t bits = w->row[((h->block[1] + y) & mask) + w->blocks * ((h->block[2] + z) & mask)];
+    unsigned turn = (unsigned)(h->block[0] + from) & 63;
+    if (turn > 0)
+        bits = bits >> turn | bits << (64 - turn);
+    bits &= ~(uint64_t)0 >> (63 - (to - from));
+    for (; bits != 0; bits &= bits - 1) {
+        int32_t x = from + __builtin_ctzll(bits);
+        if ((float)gap(x, y, z) <= h->most)
+            take_block(w, h, x, y, z);
+    }
 }
 
 /* The bisector of a candidate and the one that is nearest to the block's middle must meet the
@@ -274,17 +298,39 @@ static void keep_candidates(work *w, hunt *h) {
     h->count = kept;
 }
 
-/* Every seed that may be the nearest of any of the block's samples. Rings of blocks are taken until
- * those outside are too far; fewer than half the box, so that no block comes twice. */
-static void find_candidates(work *w, hunt *h) {
-    h->count = 0;
-    h->nearest = h->most = HUGE_VALF;
-    for (int32_t ring = 0; 2 * ring < w->blocks; ring++) {
-        take_ring(w, h, ring);
-        float known = (float)(BLOCK * ring) + 0.5f * BLOCK;
-        if (h->most <= known * known)
-            break;
+/* 0 -1 1 -2 2 ... */
+static int32_t outwards(int32_t i) {
+    return i % 2 ? -(i + 1) / 2 : i / 2;
+}
+
+/* No seed is further from this block than from the last one, plus the way between them. */
+static float bound_of(const work *w, const hunt *h) {
+    int32_t square = 0;
+    if (h->is_first)
+        return (float)w->size;
+    for (int a = 0; a < 3; a++) {
+        int32_t way = abs(h->block[a] - h->last[a]);
+        way = way < w->blocks - way ? way : w->blocks - way;
+        square += way * way;
     }
+    return sqrtf(h->nearest) + BLOCK * sqrtf((float)square) + 1e-3f;
+}
+
+/* Every seed that may be the nearest of any of the block's samples. Each block of the period is
+ * looked at once at most, where it is nearest. */
+static void find_candidates(work *w, hunt *h) {
+    float reach = bound_of(w, h) + 2 * (float)BLOCK_REACH;
+    int32_t half = w->blocks / 2, rows = (int32_t)((reach + 0.5f * BLOCK) / BLOCK);
+    int32_t from = rows < half ? -rows : -half, to = rows < half ? rows : half - 1;
+    h->count = 0;
+    h->nearest = HUGE_VALF;
+    h->most = reach * reach;
+    /* from the middle outwards, so that what is far is soon known to be */
+    for (int32_t k = 0; k <= to - from; k++)
+        for (int32_t j = 0; j <= to - from; j++)
+            take_row(w, h, outwards(j), outwards(k));
+    memcpy(h->last, h->block, sizeof h->last);
+    h->is_first = 0;
     keep_candidates(w, h);
 }
 
@@ -383,7 +429,7 @@ static void copy_block(work *w, const int32_t *block, int turn, float sign) {
 }
 
 static void fill_blocks(work *w, iso_field_symmetry symmetry) {
-    hunt h;
+    hunt h = {.is_first = 1};
     int turns = symmetry == ISO_FIELD_ANY ? 1 : 6;
     int32_t n = w->blocks, image[3];
     for (h.block[2] = 0; h.block[2] < n; h.block[2]++)
@@ -414,6 +460,7 @@ static iso_status run(work *w, iso_arena *arena, iso_field_symmetry symmetry) {
     if (w->count == 0)
         return iso_fail(ISO_BAD_CONFIG, "the lattice's cell is all solid or all void");
     ISO_TRY(ISO_PUSH(w->first, arena, blocks + 1));
+    ISO_TRY(ISO_PUSH(w->row, arena, (int64_t)w->blocks * w->blocks));
     ISO_TRY(ISO_PUSH(w->seeds, arena, w->count));
     ISO_TRY(ISO_PUSH(w->square, arena, w->count));
     ISO_TRY(ISO_PUSH(w->x, arena, w->count));
@@ -422,6 +469,7 @@ static iso_status run(work *w, iso_arena *arena, iso_field_symmetry symmetry) {
     ISO_TRY(ISO_PUSH(w->which, arena, w->count));
     ISO_TRY(ISO_PUSH(w->apart, arena, w->count));
     ISO_TRY(make_seeds(w));
+    mark_rows(w);
     fill_blocks(w, symmetry);
     return ISO_OK;
 }

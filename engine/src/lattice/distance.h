@@ -14,7 +14,7 @@ typedef enum iso_field_symmetry {
 } iso_field_symmetry;
 
 /* In place: from a smooth field to the signed distance from the surface where it is 0. `size` a
- * side, a power of two from 16 to 512; waves of the field should be 16 steps long or more.
+ * side, a power of two from 16 to 256; waves of the field should be 16 steps long or more.
  * ISO_BAD_CONFIG: there is no such surface. */
 iso_status distance_from_field(float *field, int32_t size,
                                iso_field_symmetry symmetry) ISO_MUST_CHECK;
