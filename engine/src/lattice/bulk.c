@@ -15,7 +15,9 @@
  * and up to which a single short bead will do. */
 #define AREA_LEAST 0.06
 #define AREA_DOT 4
-#define DOT_LENGTH 0.5 /* of a dot at least, in bead widths */
+enum { LOOPS = 1000 };      /* one within another, as far as there is room */
+#define DOT_LENGTH 0.5      /* of a dot at least, in bead widths */
+#define MIDDLE_SHORTEST 0.3 /* of a bead in the middle, in its widths */
 
 typedef struct bulk {
     iso_paths *out;
@@ -56,30 +58,29 @@ static iso_wall_options walls_of(const bulk *b) {
                               .like = fill->like};
 }
 
-/* Lines within the outline's bead. */
-static iso_status fill_inside(bulk *b) {
-    int32_t inset = (int32_t)(b->bead.usual / 2);
+/* Lines within the outline's bead, and beads where they don't fit. */
+static iso_status fill_inside(bulk *b, const iso_bead *bead) {
+    int32_t inset = bead->spacing / 2;
     iso_offset_options offset = iso_offset_defaults(-inset);
-    offset.join = ISO_JOIN_ROUND;
+    iso_gap_options gap = iso_gap_defaults(bead, bead->height / 2);
+    iso_fill_options fill = *b->fill;
     if (b->inside.count == 0)
         return ISO_OK;
+    offset.join = ISO_JOIN_ROUND;
     ISO_TRY(iso_offset(&b->lines, &b->inside, &offset, b->planar));
-    iso_bead bead = {b->fill->width, (int32_t)(b->bead.height + 0.5), b->fill->area,
-                     (int32_t)(b->bead.usual + 0.5)};
-    iso_gap_options gap = iso_gap_defaults(&bead, bead.height);
-    gap.like = b->fill->like;
+    gap.like = fill.like;
+    gap.shortest = MIDDLE_SHORTEST;
     ISO_TRY(iso_gap_fill_left(b->out, &b->inside, &b->lines, &(iso_gap_reach){inset, 0}, &gap,
                               b->planar));
-    iso_fill_options fill = *b->fill;
     fill.pattern = ISO_PATTERN_RECTILINEAR;
     fill.density = 1;
-    fill.spacing = b->bead.usual;
+    fill.spacing = bead->spacing;
     fill.fit = 1;
     fill.margin = inset;
-    fill.link_max = (int32_t)(5 * b->bead.usual);
+    fill.link_max = 5 * bead->spacing;
     fill.anchor = 0;
     fill.angle += 45;
-    fill.shortest = fill.width / 2;
+    fill.shortest = 0;
     return iso_fill(b->out, &b->lines, &fill, b->scratch, b->planar);
 }
 
@@ -175,7 +176,7 @@ static iso_status draw_island(bulk *b, const iso_region *section, const iso_isla
     iso_wall_options wall = walls_of(b);
     if (area > 0.5 * square) { /* else no bead runs in it */
         ISO_TRY(iso_walls(b->out, &b->inside, &b->island, &wall, b->planar));
-        ISO_TRY(fill_inside(b));
+        ISO_TRY(fill_inside(b, &wall.inner));
     }
     double scale = area * b->bead.height / (volume_from(b->out, begin) + 1);
     int suits = scale >= SCALE_LEAST && scale <= SCALE_MOST;

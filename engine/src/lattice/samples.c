@@ -4,7 +4,7 @@
 
 /* Samples a cell, for lines and for sections: struts of the least density worth asking for are a
  * tenth of a cell thick. */
-enum { LINE_SAMPLES = 20, SECTION_SAMPLES = 40 };
+enum { LINE_SAMPLES = 20, SECTION_SAMPLES = 48 };
 /* What a period holds is measured in so many times finer steps. */
 enum { FINER = 3 };
 /* mm; how far a chord between samples of a large cell may lie from its curve: curves there have

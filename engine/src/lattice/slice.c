@@ -10,7 +10,7 @@
 
 /* units; contours of sections are thinned by so much, and squares so near a region's boundary count
  * as on it. */
-enum { THINNING = 50, REACH = 200 };
+enum { THINNING = 20, REACH = 200 };
 
 /* Material by how thick it is, in mm of half a sheet: above `thin`, to `thick`. */
 typedef struct iso_share {
