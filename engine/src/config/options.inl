@@ -133,7 +133,7 @@ ISO_OPTION(
     "Ask rays whether the slices' contours have material on the side they say: off, auto (models of several shells or that were mended), or full.")
 ISO_OPTION(
     repair, REPAIR, "mend", "", 0, 0, "Objects",
-    "What becomes of a model that is open beyond mending: mend refuses it, volume makes a new surface around what its triangles enclose.")
+    "What becomes of a model: mend mends its defects or refuses it, volume makes a new surface around what its triangles enclose.")
 ISO_OPTION(repair_voxel, NUMBER, "0", "mm", 0, 100, "Objects",
            "Fineness of repair = volume; 0 is 1/300 of the model's largest extent.")
 ISO_OPTION(

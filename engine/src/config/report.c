@@ -74,12 +74,15 @@ iso_status iso_report_warn_mended(iso_report *report, const char *path,
         length += (size_t)snprintf(text + length, sizeof text - length, " of %g mm",
                                    found->sheet_thickness);
     if (found->voxel > 0)
-        length +=
-            (size_t)snprintf(text + length, sizeof text - length,
-                             "%smade anew on a grid of %.4g mm from %lld triangles, %.3g mm "
-                             "off at most, %.2g in the mean",
-                             length > 0 ? "; " : "", found->voxel, (long long)found->triangles_read,
-                             found->largest_error, found->mean_error);
+        length += (size_t)snprintf(
+            text + length, sizeof text - length,
+            "%smade anew on a grid of %.4g mm from %lld triangles, %.3g mm off at most, %.2g in the "
+            "mean%s",
+            length > 0 ? "; " : "", found->voxel, (long long)found->triangles_read,
+            found->largest_error, found->mean_error,
+            found->largest_error > 2.99 * found->voxel
+                ? ": some triangles enclose nothing and are gone"
+                : "");
     return length == 0 ? ISO_OK : iso_report_warn(report, "mesh-mended", "%s: %s", path, text);
 }
 
