@@ -371,7 +371,7 @@ static void test_odd_region(void) {
             for (int32_t i = 0; i < paths.vertex_count; i++) {
                 const iso_path_vertex *v = &paths.vertex[i];
                 CHECK(iso_region_locate(&region, v->at) >= 0 || off_edges(&region, v->at) < 1500);
-                CHECK(v->width > 900 && v->area > 0);
+                CHECK(v->width > 500 && v->area > 0);
             }
             iso_paths_free(&paths);
             iso_paths_free(&again);
