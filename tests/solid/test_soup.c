@@ -85,7 +85,7 @@ static void test_random_triangles(void) {
         random_points(c, 3, 10, seed += 17);
         shape_triangle(&shape, c[0], c[1], c[2]);
     }
-    check_against_brute(&shape, 15, 0.002);
+    check_against_brute(&shape, 15, 0.02);
     shape_free(&shape);
 }
 

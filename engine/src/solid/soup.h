@@ -13,7 +13,7 @@ typedef struct iso_soup iso_soup;
 iso_status soup_new(iso_soup **soup, const iso_vec3 *corner, int64_t count) ISO_MUST_CHECK;
 void soup_free(iso_soup *soup);
 
-/* Within 0.05 of the truth; within 1e-9 of up to 8 triangles. Any number of
+/* Within 0.1 of the truth; within 1e-9 of up to 8 triangles. Any number of
  * threads at once. */
 void soup_winding(double *winding, const iso_soup *soup, const iso_vec3 *point, int64_t count);
 
