@@ -236,7 +236,6 @@ static iso_status write_gcode(work *w) {
 }
 
 static iso_status run(work *w) {
-    ISO_TRY(check_paths(w));
     ISO_TRY(choose_settings(w));
     if (w->format == FORMAT_GCODE)
         return write_gcode(w);
@@ -269,6 +268,7 @@ iso_status iso_verb_lattice(const iso_arguments *arguments) {
                         ".vdb or .gcode");
     *w = (work){.arguments = arguments, .output = arguments->output, .begun = clock_seconds()};
     ISO_TRY(find_format(&w->format, w->output));
+    ISO_TRY(check_paths(w));
     iso_status status = run(w);
     iso_progress_clear(&w->line);
     note_time(w);

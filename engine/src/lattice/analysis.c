@@ -60,7 +60,7 @@ static iso_status counting_new(counting *c, const iso_body *body, iso_pool *pool
     }
     ISO_TRY(ISO_ALLOCATE(c->voxel, plane));
     ISO_TRY(ISO_ALLOCATE(c->sum, c->tasks));
-    ISO_TRY(labels_begin(&c->solids, ISO_JOIN_CORNERS, columns, rows, planes));
+    ISO_TRY(labels_begin(&c->solids, ISO_JOIN_FACES, columns, rows, planes));
     ISO_TRY(labels_begin(&c->airs, ISO_JOIN_FACES, columns, rows, planes));
     ISO_TRY(labels_begin(&c->parts, ISO_JOIN_CORNERS, columns, rows, planes));
     c->parts.keep_all = 1;

@@ -11,12 +11,12 @@
 
 #include <isoslice/status.h>
 
-/* Material that touches at a corner counts as one: a wall of voxels as thin as one is connected and
- * lets nothing through whatever its slope, if what is around it is joined by faces alone. The two
- * rules belong together (Rosenfeld): otherwise a surface could both hold and leak. */
+/* Material and air are both joined by faces alone: what touches at an edge doesn't hold in a print
+ * or a mesh, and lets no powder through. (Joining one of them by corners, so that a wall either
+ * holds or leaks, would keep crumbs at the edges of cut walls.) */
 typedef enum iso_joining {
-    ISO_JOIN_FACES,  /* 6 neighbours: air */
-    ISO_JOIN_CORNERS /* 26: material */
+    ISO_JOIN_FACES,  /* 6 neighbours */
+    ISO_JOIN_CORNERS /* 26: bodies of the part, which are the user's */
 } iso_joining;
 
 typedef struct iso_piece {

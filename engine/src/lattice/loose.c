@@ -59,14 +59,22 @@ static iso_status take(search *s, int64_t at) {
     return ISO_OK;
 }
 
-/* All 26 neighbours within the box. */
+/* Those that share a face, within the box. */
 static iso_status take_neighbours(search *s, int32_t at) {
-    int32_t x = at % s->size[0], y = at / s->size[0] % s->size[1], z = at / s->size[0] / s->size[1];
-    for (int32_t k = z > 0 ? z - 1 : 0; k <= z + 1 && k < s->size[2]; k++)
-        for (int32_t j = y > 0 ? y - 1 : 0; j <= y + 1 && j < s->size[1]; j++)
-            for (int32_t i = x > 0 ? x - 1 : 0; i <= x + 1 && i < s->size[0]; i++)
-                ISO_TRY(take(s, i + s->size[0] * (j + (int64_t)s->size[1] * k)));
-    return ISO_OK;
+    int32_t nx = s->size[0], ny = s->size[1];
+    int32_t x = at % nx, y = at / nx % ny, z = at / nx / ny;
+    int64_t plane = (int64_t)nx * ny;
+    if (x > 0)
+        ISO_TRY(take(s, at - 1));
+    if (x + 1 < nx)
+        ISO_TRY(take(s, at + 1));
+    if (y > 0)
+        ISO_TRY(take(s, at - nx));
+    if (y + 1 < ny)
+        ISO_TRY(take(s, at + nx));
+    if (z > 0)
+        ISO_TRY(take(s, at - plane));
+    return z + 1 < s->size[2] ? take(s, at + plane) : ISO_OK;
 }
 
 static iso_status flood(search *s) {

@@ -73,7 +73,8 @@ static void drill(float *material, const iso_porous *porous, const iso_body_row 
     double r = porous->options.drain_diameter / 2, y = row->first.y, z = row->first.z;
     for (int32_t d = 0; d < porous->options.drain_count; d++) {
         iso_vec2 at = drain_at(porous, d);
-        double above = z - porous->drain_top[d], across = fabs(y - at.y) - r;
+        /* a step into the lattice: a film of one voxel would close a hole that just reaches it */
+        double above = z - porous->drain_top[d] - row->step, across = fabs(y - at.y) - r;
         if (above > NEAR * row->step || across > NEAR * row->step)
             continue;
         for (int32_t i = 0; i < row->count; i++) {

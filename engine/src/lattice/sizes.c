@@ -265,7 +265,7 @@ static void collect(cube *c, int side) {
                 if (side)
                     c->wall_sum += width, c->walls++;
                 else
-                    c->width[c->pores++] = (float)width;
+                    c->width[c->pores++] = (float)fmin(width, c->largest);
             }
 }
 
