@@ -45,10 +45,12 @@ static double volume_from(const iso_paths *paths, int32_t begin) {
     return sum;
 }
 
+/* Loops hold what is between their outline and the next bead, which is more than their round sides
+ * would leave there: so they count as wide as their section is, and reach a little further out. */
 static iso_wall_options walls_of(const bulk *b) {
     const iso_fill_options *fill = b->fill;
-    int32_t height = (int32_t)(b->bead.height + 0.5);
-    iso_bead bead = {fill->width, height, fill->area, (int32_t)(b->bead.usual + 0.5)};
+    int32_t height = (int32_t)(b->bead.height + 0.5), net = (int32_t)(b->bead.usual + 0.5);
+    iso_bead bead = {net, height, fill->area, net};
     return (iso_wall_options){.count = 1,
                               .external = bead,
                               .inner = bead,
@@ -159,7 +161,7 @@ static void settle(bulk *b, int32_t begin, double scale) {
             iso_path_vertex *v = &out->vertex[i];
             double area = v->area * scale;
             v->role = path->role;
-            v->width += (int32_t)floor((area - v->area) / b->bead.height + 0.5);
+            v->width = (int32_t)(area / b->bead.height + b->bead.corners + 0.5);
             v->area = (int32_t)(area + 0.5);
         }
     }
