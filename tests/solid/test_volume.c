@@ -335,6 +335,13 @@ static uint64_t next_random(void) {
     return seed ^= seed << 17;
 }
 
+/* OpenVDB 10 itself forgets the part of a tree that it was at when reading throws: some 270 KB for
+ * a damaged file. */
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void) {
+    return "leak:readTopology\n";
+}
+
 /* Cut off and flipped: any status, never a crash. What can be read can be used. */
 static void test_damaged_files(void) {
     static int failed, read;
