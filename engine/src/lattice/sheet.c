@@ -99,7 +99,8 @@ static void fill_row(const drawing *d, int32_t j, double *value, double *width) 
     int32_t before = s->repeats ? s->period - 1 : 0; /* column 0 */
     double place = (2 * d->line - d->lines + 1) / (double)d->lines;
     double thin = thin_limit(d), thick = limit_of(d->bead, d->lines);
-    for (int32_t i = 0; i < columns; i++) {
+    int32_t own = s->repeats ? s->period : columns;
+    for (int32_t i = 0; i < own; i++) {
         double h = half[i];
         value[i] = at[1][i] - place * h;
         width[i] = -1;
@@ -108,6 +109,10 @@ static void fill_row(const drawing *d, int32_t j, double *value, double *width) 
         int32_t column[3] = {i > 0 ? i - 1 : before, i, i < last ? i + 1 : i};
         double wide = strip_width(at, column, h / d->lines) * s->raster.step;
         width[i] = wide < d->bead->most ? wide : d->bead->most;
+    }
+    for (int32_t i = own; i < columns; i++) {
+        value[i] = value[i - own];
+        width[i] = width[i - own];
     }
 }
 
