@@ -139,6 +139,9 @@ static double triangle_share(double a, double b, double c) {
 }
 
 static double square_share(const double v[4]) {
+    int below = (v[0] <= 0) + (v[1] <= 0) + (v[2] <= 0) + (v[3] <= 0);
+    if (below % 4 == 0)
+        return below / 4;
     double middle = ((v[0] + v[1]) + (v[2] + v[3])) / 4, share = 0;
     for (int k = 0; k < 4; k++)
         share += triangle_share(v[k], v[(k + 1) % 4], middle);

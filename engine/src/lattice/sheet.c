@@ -37,6 +37,9 @@ static double limit_of(const sheet_bead *bead, int lines) {
     return lines * THICKEST * bead->usual / (2 * ISO_UNITS_PER_MM);
 }
 
+/* Between neighbouring samples, a step apart, distances differ by no more steps than this. */
+#define FAR_STEPS 2
+
 /* Zones whose lines would hold less or more than their section by such a factor aren't for lines.
  */
 #define SCALE_LEAST 0.75
@@ -100,11 +103,15 @@ static void fill_row(const drawing *d, int32_t j, double *value, double *width) 
     double place = (2 * d->line - d->lines + 1) / (double)d->lines;
     double thin = thin_limit(d), thick = limit_of(d->bead, d->lines);
     int32_t own = s->repeats ? s->period : columns;
+    double far = FAR_STEPS * s->plane.step;
     for (int32_t i = 0; i < own; i++) {
         double h = half[i];
         value[i] = at[1][i] - place * h;
         width[i] = -1;
         if (!(h > thin && h <= thick))
+            continue;
+        width[i] = d->bead->most;
+        if (fabs(value[i]) > far) /* no crossing is next to it */
             continue;
         int32_t column[3] = {i > 0 ? i - 1 : before, i, i < last ? i + 1 : i};
         double wide = strip_width(at, column, h / d->lines) * s->raster.step;
