@@ -14,18 +14,19 @@ static const double NEAR = 3;    /* steps from the surface, within which distanc
 
 /* ---- the part's surface ---- */
 
-static const double SURFACE_BYTES = 2.5e8; /* for distances to it */
+/* For distances to it, and where nothing but figures is wanted. */
+static const double SURFACE_BYTES = 2.5e8, LEAST_BYTES = 5e7;
 
 iso_status part_find_surface(iso_porous *porous, const iso_mesh *mesh, int32_t count, double step) {
     iso_skin_options options = {.voxel = step};
+    double most = porous->options.output == ISO_POROUS_FIGURES ? LEAST_BYTES : SURFACE_BYTES;
     volume_free(porous->surface);
     porous->surface = NULL;
     for (;; options.voxel *= 1.1) { /* as fine as there is room for; blocks are half empty */
         options.outer = (REACH + NEAR + 1) * step + options.voxel;
         options.inner = options.outer + porous->options.skin;
         double v = options.voxel;
-        if (porous->part_area * (options.outer + options.inner + 8 * v) * 4 / (v * v * v) <
-            SURFACE_BYTES)
+        if (porous->part_area * (options.outer + options.inner + 8 * v) * 4 / (v * v * v) < most)
             break;
     }
     porous->known = options.inner;
