@@ -26,7 +26,8 @@ iso_status lattice_section(iso_region *out, const iso_region *area, const iso_la
 /* Beads that fill the section: sheets thinner than about a bead and a half by one bead as wide as
  * the sheet is there, thicker ones by more; everything else by walls and lines. `fill` gives bead,
  * height of the layer, links, role; `region` is where the beads' middles may go, inset by margin.
- * Bead volume = section times height. */
+ * Bead volume = section times height, but for what is thinner than a third of a bead, and gets that
+ * much. Links along the region's boundary come on top: link_max 0 leaves them out. */
 iso_status lattice_fill(iso_paths *out, const iso_region *region, const iso_lattice_slice *slice,
                         const iso_fill_options *fill, iso_arena *scratch,
                         iso_planar_scratch *planar) ISO_MUST_CHECK;
