@@ -8,7 +8,7 @@
 
 static const double BYTES_MOST = 1.5e9; /* that an output may need while it is made */
 static const double DISTANCE_BYTES = 60, MESH_BYTES = 150; /* for a square voxel of surface */
-static const double MASK_BYTES = 104;   /* for a block of 8 x 8 x 8 voxels, if all have a surface */
+static const double MASK_BYTES = 116;   /* for a block of 8 x 8 x 8 voxels, if all have a surface */
 static const double COUNTED_MOST = 4e8; /* voxels, where nothing but figures is wanted */
 static const int64_t LOOSE_MOST = (int64_t)1 << 30; /* voxels of loose pieces' boxes */
 
