@@ -7,7 +7,7 @@
 #include "config/value.h"
 #include "verbs.h"
 
-#define RANGE_SIZE 320 /* of the longest list of words with room for more */
+#define RANGE_SIZE 1024 /* of the longest list of words with room for more */
 
 static const char *const verb_usage[] = {
     "isoslice [slice] [options] part.stl [more.stl...] [-o part.gcode]",

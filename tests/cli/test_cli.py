@@ -393,7 +393,7 @@ class Cli(unittest.TestCase):
     def test_every_word_is_listed(self):
         table = (SOURCE / "config/options.inl").read_text()
         lists = {}
-        for kind, word in re.findall(r'^ISO_WORD\((\w+), \w+, "([^"]+)"\)', table, re.M):
+        for kind, word in re.findall(r'^ISO_WORD\((\w+), [\w +]+, "([^"]+)"\)', table, re.M):
             lists.setdefault(kind, []).append(word)
         listings = [self.run_it("--list-options").stdout.decode(),
                     self.run_it("--list-options=markdown").stdout.decode(),

@@ -29,7 +29,7 @@ struct iso_pool {
     int64_t next, count;
     int64_t failed_index;
     iso_status status;
-    char message[512];
+    char message[1024];
     iso_worker worker[];
 };
 

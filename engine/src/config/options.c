@@ -119,7 +119,7 @@ iso_status iso_options_set(iso_options *options, const char *key, const char *va
     iso_value parsed;
     const char *wrong = iso_value_parse(&parsed, info, value);
     if (wrong) {
-        char range[320];
+        char range[1024];
         describe_range(range, sizeof range, info);
         return iso_fail(ISO_BAD_CONFIG, "%s: %s = %.80s %s; allowed: %s", where, info->key, value,
                         wrong, range);
