@@ -256,7 +256,7 @@ ISO_OPTION(
 ISO_OPTION(
     lattice_map, MAP, "xyz", "", 0, 0, "Lattices",
     "Along what the cells lie: xyz; around the part's axis (cylinder), its middle (sphere); or along its surface (skin, skin_cylinder).")
-ISO_OPTION(lattice_seed, INTEGER, "0", "", 0, 2147483647, "Lattices",
+ISO_OPTION(lattice_seed, INTEGER, "0", "", 0, 1000000, "Lattices",
            "Number that all that is random in a lattice comes from.")
 ISO_OPTION(lattice_pore, NUMBER, "0.4", "", 0.05, 1, "Lattices",
            "Of voxel_random: size of its pores, in cells.")
