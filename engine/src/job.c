@@ -40,7 +40,9 @@ typedef struct iso_job {
     iso_surround surround;
     iso_paths piece, ordered;
     iso_order_options order;
-    iso_order_state *state; /* [plate.instances.count + 1] of each copy; the last: what is around */
+    iso_order_state *state; /* [tools][plate.instances.count + 1] of each copy; the last: what is
+                             * around */
+    int32_t tools, tool;    /* how many the print takes, and which one the nozzle is of */
     iso_point position;     /* of the nozzle */
     bool spirals;           /* the layer below did */
     iso_output *output;
@@ -78,6 +80,7 @@ static iso_status slice_objects(iso_job *job) {
             report->layer_count = stack->levels.count;
         report->printed_height = fmax(report->printed_height, height);
         job->bytes[ISO_STAGE_SLICE] += stack->slice_bytes;
+        job->tools = job->tools > stack->tools ? job->tools : stack->tools;
     }
     for (int32_t i = 0; i < report->input_count; i++)
         job->bytes[ISO_STAGE_READ] += report->input[i].mesh_bytes;
@@ -137,11 +140,36 @@ static bool takes_part(const iso_job *job, const iso_step *step, int32_t object)
            iso_units(levels->height[next]) == step->height;
 }
 
-/* `copy` is the number of an instance; as many as there are: what is around them. */
-static iso_status order_paths(iso_job *job, const iso_paths *paths, iso_point by, int32_t copy) {
-    iso_order_state *state = &job->state[copy];
+static int32_t states(const iso_job *job) {
+    return job->plate.instances.count + 1;
+}
+
+/* Those of one tool; their vertices are the others' too. */
+static iso_status choose_paths(iso_paths *out, const iso_paths *paths, int32_t tool,
+                               iso_arena *arena) {
+    *out = (iso_paths){.vertex = paths->vertex, .vertex_count = paths->vertex_count};
+    ISO_TRY(ISO_PUSH(out->path, arena, paths->count));
+    for (int32_t i = 0; i < paths->count; i++)
+        if (paths->path[i].tool == tool)
+            out->path[out->count++] = paths->path[i];
+    return ISO_OK;
+}
+
+/* `copy` is the number of an instance; as many as there are: what is around them. A print with one
+ * tool takes the paths as they are. */
+static iso_status order_paths(iso_job *job, const iso_paths *paths, iso_point by, int32_t copy,
+                              int32_t tool) {
+    iso_order_state *state = &job->state[tool * states(job) + copy];
+    iso_arena *arena = &job->crew.hand[0].arena;
+    iso_arena_mark mark = iso_arena_get_mark(arena);
+    iso_paths own;
     state->position = (iso_point){job->position.x - by.x, job->position.y - by.y};
-    ISO_TRY(iso_order_layer(&job->piece, paths, state, &job->order, &job->crew.hand[0].arena));
+    if (job->tools > 1) {
+        ISO_TRY(choose_paths(&own, paths, tool, arena));
+        paths = &own;
+    }
+    ISO_TRY(iso_order_layer(&job->piece, paths, state, &job->order, arena));
+    iso_arena_pop(arena, mark);
     job->position = (iso_point){state->position.x + by.x, state->position.y + by.y};
     return iso_paths_append(&job->ordered, &job->piece, by,
                             copy < job->plate.instances.count ? copy : -1);
@@ -161,14 +189,12 @@ static iso_status make_layers(iso_job *job, const iso_step *step) {
     return ISO_OK;
 }
 
-/* Copies take turns there and back again, so that the next layer begins where this one ends. */
-static iso_status order_step(iso_job *job, const iso_step *step) {
-    double begun = iso_stage_clock();
-    iso_paths_clear(&job->ordered);
-    const iso_paths *around;
-    ISO_TRY(surround_step(&around, &job->surround, step->z, step->height, job->options));
+/* What one tool prints. Copies take turns there and back again, so that the next layer begins where
+ * this one ends. */
+static iso_status order_tool(iso_job *job, const iso_step *step, const iso_paths *around,
+                             int32_t tool) {
     if (around)
-        ISO_TRY(order_paths(job, around, (iso_point){0, 0}, job->plate.instances.count));
+        ISO_TRY(order_paths(job, around, (iso_point){0, 0}, job->plate.instances.count, tool));
     for (int32_t k = 0; k < step->count; k++) {
         int32_t i = job->steps & 1 ? step->count - 1 - k : k;
         const iso_instance *instance = &step->instance[i];
@@ -178,10 +204,25 @@ static iso_status order_step(iso_job *job, const iso_step *step) {
             continue;
         const iso_layer *layer = window_layer(&stack->window, index);
         ISO_TRY(order_paths(job, &layer->paths, instance->by,
-                            (int32_t)(instance - job->plate.instances.instance)));
+                            (int32_t)(instance - job->plate.instances.instance), tool));
+        if (tool > 0)
+            continue; /* it has been counted */
         job->report->sliced_volume += layer->square_mm * stack->levels.height[index];
         job->layers_done++;
     }
+    return ISO_OK;
+}
+
+/* The tool that the layer below ended with begins: so there's one change in a layer. */
+static iso_status order_step(iso_job *job, const iso_step *step) {
+    double begun = iso_stage_clock();
+    iso_paths_clear(&job->ordered);
+    const iso_paths *around;
+    ISO_TRY(surround_step(&around, &job->surround, step->z, step->height, job->options));
+    for (int32_t turn = 0; turn < job->tools; turn++)
+        ISO_TRY(order_tool(job, step, around, turn == 0 ? job->tool : 1 - job->tool));
+    if (job->ordered.count > 0)
+        job->tool = job->ordered.path[job->ordered.count - 1].tool;
     job->seconds[ISO_STAGE_ORDER] += iso_stage_clock() - begun;
     return ISO_OK;
 }
@@ -304,9 +345,9 @@ static iso_status warn_of_unused_modifiers(const iso_job *job) {
 }
 
 static iso_status print_steps(iso_job *job) {
-    int64_t states = (int64_t)job->plate.instances.count + 1;
-    ISO_TRY(ISO_ALLOCATE(job->state, states));
-    memset(job->state, 0, (size_t)states * sizeof *job->state);
+    int64_t count = (int64_t)job->tools * states(job);
+    ISO_TRY(ISO_ALLOCATE(job->state, count));
+    memset(job->state, 0, (size_t)count * sizeof *job->state);
     job->order = settings_of_order(job->options);
     ISO_TRY(job->options->complete_objects ? print_one_by_one(job) : print_together(job));
     progress(job, 1, "done");
@@ -364,6 +405,7 @@ static iso_status look_at_first_layers(iso_job *job) {
 
 static iso_status begin_output(iso_job *job, const char *path) {
     iso_gcode_options gcode = settings_of_gcode(job->options, &job->texts, job->hooks->timestamp);
+    gcode.tools = job->tools;
     gcode.object = job->plate.label;
     gcode.object_count = job->plate.label ? job->plate.instances.count : 0;
     ISO_TRY(iso_output_open(&job->output, path));
@@ -388,7 +430,7 @@ static void job_free(iso_job *job) {
         stack_free(&job->stack[i]);
     iso_release(job->stack);
     iso_release(job->next);
-    for (int32_t i = 0; job->state && i <= job->plate.instances.count; i++)
+    for (int32_t i = 0; job->state && i < job->tools * states(job); i++)
         iso_order_state_free(&job->state[i]);
     iso_release(job->state);
     crew_free(&job->crew);

@@ -8,10 +8,10 @@
 
 /* ---- the option ---- */
 
-static const char *const allowed[] = {"fill_density",    "fill_angle",        "fill_pattern",
-                                      "infill_anchor",   "infill_anchor_max", "lattice_cell",
-                                      "lattice_density", "lattice_map",       "lattice_seed",
-                                      "lattice_pore",    "lattice_file",      "lattice_grid"};
+static const char *const allowed[] = {
+    "fill_density", "fill_angle",      "fill_pattern",    "infill_anchor", "infill_anchor_max",
+    "lattice_cell", "lattice_density", "lattice_map",     "lattice_seed",  "lattice_pore",
+    "lattice_file", "lattice_grid",    "lattice_material"};
 #define ALLOWED                                                                                    \
     "fill_density, fill_angle, fill_pattern, infill_anchor, infill_anchor_max or lattice_..."
 

@@ -139,8 +139,11 @@ static iso_status make_lattices(iso_stack *stack, const iso_object *object) {
         char percent[32];
         iso_lattice_options options = settings_of_lattice(options_at(stack, k), percent);
         options.cut = stack->cut;
-        if (options.pattern >= 0)
-            ISO_TRY(lattice_new(&stack->lattice[k], &options, object->mesh, object->mesh_count));
+        if (options.pattern < 0)
+            continue;
+        ISO_TRY(lattice_new(&stack->lattice[k], &options, object->mesh, object->mesh_count));
+        if (lattice_material(stack->lattice[k]))
+            stack->tools = 2;
     }
     return ISO_OK;
 }
@@ -151,6 +154,7 @@ iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *
     stack->modifiers = modifiers;
     iso_shell_depth shells = settings_of_shells(stack->options);
     stack->crew = crew;
+    stack->tools = 1;
     stack->block = LAYERS_PER_THREAD * crew->count;
     ISO_TRY(make_levels(stack, object));
     ISO_TRY(make_lattices(stack, object));

@@ -38,6 +38,7 @@ typedef struct iso_stack {
     iso_window window;
     iso_lattice **lattice; /* [modifiers + 1] of each modifier and, last, of the rest, where sparse
                             * fill is a lattice; or NULL */
+    int32_t tools;         /* of its paths: 2 if a lattice has two materials, else 1 */
     iso_combination *combination; /* [levels.count] whose sparse fill is drawn at once; or NULL */
     int32_t block;                /* layers filled in one go */
     int32_t around;               /* layers whose shells each of them looks at, above and below */

@@ -15,9 +15,16 @@ static inline void check_machine(const print *p) {
     CHECK(p->state.fan == 0);
 }
 
+/* Of all tools. */
 static inline double print_footer(const print *p, const char *text) {
     const char *at = strstr(p->text, text);
-    return at ? strtod(at + strlen(text), NULL) : -1;
+    char *end;
+    if (!at)
+        return -1;
+    double sum = strtod(at + strlen(text), &end);
+    while (*end == ',')
+        sum += strtod(end + 1, &end);
+    return sum;
 }
 
 static inline void check_totals(const print *p) {
@@ -37,10 +44,10 @@ static inline void check_totals(const print *p) {
     }
     CHECK_NEAR(t->filament_mm, drawn, 2e-5);
     CHECK_NEAR(p->machine.extruded_along_paths, drawn, 1e-4 + 1e-7 * drawn);
-    CHECK_NEAR(print_footer(p, "; filament used [mm] = "), drawn, 0.00501);
+    CHECK_NEAR(print_footer(p, "; filament used [mm] = "), drawn, 0.01001);
     double section = SHAPE_PI / 4 * p->options.filament_diameter * p->options.filament_diameter;
     CHECK_NEAR(t->filament_cm3, drawn * section / 1000, 1e-6 + 1e-9 * drawn);
-    CHECK_NEAR(print_footer(p, "; filament used [cm3] = "), t->filament_cm3, 0.00501);
+    CHECK_NEAR(print_footer(p, "; filament used [cm3] = "), t->filament_cm3, 0.01001);
     CHECK_NEAR(t->filament_cm3 * p->options.filament_density, t->filament_g, 1e-9);
     CHECK_NEAR(t->bead_mm, bead, 1e-6 * bead + 1e-6);
     CHECK(t->travel_mm >= travel - 1e-3);

@@ -50,6 +50,75 @@ static void finer_pores(const change *c) {
     CHECK(print_runs(c->b, SPARSE, -1) > print_runs(c->a, SPARSE, -1));
 }
 
+/* ---- two materials ---- */
+
+/* Of tool 1, within a box around the middle of the bed. */
+static double share_between(const print *p, double low, double high) {
+    iso_vec2 center = iso_options_center(&p->options);
+    double of[2] = {0, 0};
+    for (int32_t i = 0; i < p->move_count; i++) {
+        const print_move *m = &p->move[i];
+        double x = (m->ax + m->bx) / 2 - center.x;
+        if (move_chosen(m, SPARSE, -1) && x > low && x < high)
+            of[m->tool] += m->e;
+    }
+    return of[1] / (of[0] + of[1]);
+}
+
+static int tool_changes(const print *p) {
+    int changes = 0;
+    for (int32_t i = 1; i < p->move_count; i++)
+        changes += p->move[i].layer >= 0 && p->move[i].tool != p->move[i - 1].tool;
+    return changes;
+}
+
+/* One change a layer; walls, and all else but the lattice, are of the first. */
+static void two_materials(const change *c) {
+    int others = 0;
+    for (int32_t i = 0; i < c->b->move_count; i++) {
+        const print_move *m = &c->b->move[i];
+        others += m->kind == MOVE_DRAW && m->tool != 0 && m->role != SPARSE;
+    }
+    CHECK_EQUAL(0, others);
+    CHECK_EQUAL(0, tool_changes(c->a));
+    CHECK(tool_changes(c->b) <= c->b->level_count && tool_changes(c->b) > 30);
+    CHECK_EQUAL(c->b->report.print.tool_changes, tool_changes(c->b));
+    CHECK_NEAR(1, filament(c->b) / filament(c->a), 0.002);
+    CHECK(c->b->state.tool == c->b->move[c->b->move_count - 1].tool);
+}
+
+static void half_and_half(const change *c) {
+    two_materials(c);
+    CHECK_NEAR(0.5, share_between(c->b, -8, 8), 0.03);
+}
+
+static void more_on_the_right(const change *c) {
+    two_materials(c);
+    CHECK_NEAR(0.25, share_between(c->b, -6, -2), 0.07);
+    CHECK_NEAR(0.75, share_between(c->b, 2, 6), 0.07);
+}
+
+/* At each change, with the numbers of the tools. */
+static void toolchange_gcode(const change *c) {
+    int changes = tool_changes(c->b), found = 0;
+    CHECK(same_places(c->a, c->b));
+    for (const char *at = c->b->text; (at = strstr(at, "\nM117 from ")); found++) {
+        int from, to, named;
+        double z;
+        at++;
+        CHECK_EQUAL(4, sscanf(at, "M117 from %d to %d at %lf\nT%d", &from, &to, &z, &named));
+        CHECK(from == 1 - to && named == to && z > 0);
+    }
+    CHECK_EQUAL(changes, found);
+}
+
+/* It may take the tool by itself. */
+static void tool_by_text(const change *c) {
+    CHECK(same_places(c->a, c->b));
+    CHECK_EQUAL(tool_changes(c->a), tool_changes(c->b));
+    CHECK(!strstr(c->b->text, "T0 ; by text\nT") && strstr(c->b->text, "T0 ; by text\n"));
+}
+
 /* ---- files ---- */
 
 static char cell_file[128], cell_base[512], grid_file[128], grid_base[512];
@@ -141,6 +210,13 @@ static void denser_on_the_right(const change *c) {
 const option_row option_rows_lattice[] = {
     {make_tall, "lattice_cell", "3", SHEET "lattice_density = 18", finer},
     {make_tall, "lattice_cell", "3", OF("bcc_struts") "lattice_cell = 5", elsewhere},
+    {make_tall, "lattice_material", "50", SHEET "lattice_cell = 1.5", half_and_half},
+    {make_tall, "lattice_material", "50+6.25*x", SHEET "lattice_cell = 1.5", more_on_the_right},
+    {make_tall, "toolchange_gcode",
+     "M117 from {previous_extruder} to {next_extruder} at {toolchange_z}",
+     SHEET "lattice_material = 50", toolchange_gcode},
+    {make_tall, "toolchange_gcode", "M117\\nT{next_extruder} ; by text\\nM117 done",
+     SHEET "lattice_material = 50", tool_by_text},
     {make_tall, "lattice_density", "40", SHEET "fill_density = 20%", denser},
     {make_tall, "lattice_density", "20+20", SHEET "fill_density = 20%", denser},
     {make_tall, "lattice_density", "40", OF("kelvin_struts") "fill_density = 20%", denser},

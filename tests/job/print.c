@@ -70,7 +70,7 @@ static char *read_file(const char *path, size_t *size) {
 typedef struct reader {
     print *p;
     double x, y, z, e, f, width, fan;
-    int role, unbroken;
+    int role, tool, unbroken;
     int32_t run;
 } reader;
 
@@ -112,6 +112,7 @@ static void read_move(reader *r, const char *line, const char *end) {
                                                              : MOVE_FILAMENT;
     m->layer = p->level_count - 1;
     m->role = r->role;
+    m->tool = r->tool;
     if (m->kind == MOVE_DRAW && !r->unbroken)
         r->run++;
     r->unbroken = m->kind == MOVE_DRAW;
@@ -154,6 +155,9 @@ static void read_gcode(print *p) {
             read_move(&r, line, end);
         else if (!strncmp(line, "G92 E0", 6))
             r.e = 0;
+        else if (line[0] == 'T' && (line[1] == '0' || line[1] == '1') &&
+                 (line + 2 == end || line[2] == ' '))
+            r.tool = line[1] - '0';
         else if (!strncmp(line, "M83", 3) || !strncmp(line, "M82", 3))
             p->relative = line[2] == '3';
         else if (!strncmp(line, "M107", 4))
@@ -188,6 +192,7 @@ static void set_machine(fio_virtual_options *machine, const iso_options *options
     machine->classic_jerk = o->gcode_flavor == ISO_FLAVOUR_MARLIN;
     machine->filament_diameter = options->filament_diameter;
     machine->maximum_flow = 1000;
+    machine->tools = *options->lattice_material ? 2 : 1;
 }
 
 static void set_volume(fio_virtual_options *machine, const iso_options *options) {

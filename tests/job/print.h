@@ -19,6 +19,7 @@ typedef struct print_move {
     int32_t layer;                 /* -1 before the first one */
     int32_t run; /* numbers the unbroken strings of drawing moves of one role, from 0 */
     int role;    /* iso_role, -1 unknown */
+    int tool;
     move_kind kind;
 } print_move;
 

@@ -36,6 +36,7 @@ typedef enum iso_gcode_text_kind {
     ISO_TEXT_BEFORE_LAYER,    /* at every layer, before the nozzle rises to it */
     ISO_TEXT_LAYER,           /* at every layer, once it is there */
     ISO_TEXT_BETWEEN_OBJECTS, /* of objects printed one after the other */
+    ISO_TEXT_TOOLCHANGE,      /* before another tool is taken; also taking it, if it likes */
     ISO_TEXT_COLOR_CHANGE,
     ISO_TEXT_PAUSE,
     ISO_TEXT_TEMPLATE,
@@ -43,12 +44,15 @@ typedef enum iso_gcode_text_kind {
     ISO_TEXT_KIND_COUNT
 } iso_gcode_text_kind;
 
+enum { ISO_TOOLS_MOST = 2 }; /* of one print */
+
 typedef struct iso_gcode_place {
-    int32_t layer;     /* from 0; -1 before the first one */
-    double z;          /* mm: the layer's top, z_offset left out */
-    double max_z;      /* mm: the highest top so far */
-    int32_t object;    /* that is coming, or -1 */
-    const char *event; /* of ISO_TEXT_EVENT: the text as it was given */
+    int32_t layer;                         /* from 0; -1 before the first one */
+    double z;                              /* mm: the layer's top, z_offset left out */
+    double max_z;                          /* mm: the highest top so far */
+    int32_t object;                        /* that is coming, or -1 */
+    const char *event;                     /* of ISO_TEXT_EVENT: the text as it was given */
+    int32_t tool, next_tool, tool_changes; /* of ISO_TEXT_TOOLCHANGE; so far, this one included */
 } iso_gcode_place;
 
 /* Write the text of that kind into text[size], terminated; "" for none. A failure ends the job. */
@@ -116,6 +120,8 @@ typedef struct iso_gcode_options {
     int wipe;                   /* while the filament is drawn back; not by the firmware */
     double retract_before_wipe; /* share of retract_length, 0 to 1 */
 
+    int32_t tools; /* of the paths, numbers below it; at most ISO_TOOLS_MOST; 0: one. All are
+                    * alike in filament, retraction and temperature */
     int temperature, first_layer_temperature; /* 0: say nothing */
     int bed_temperature, first_layer_bed_temperature;
 
@@ -156,6 +162,8 @@ typedef struct iso_gcode_totals {
     double first_layer_time; /* s */
     double bead_mm, travel_mm;
     int64_t moves, retractions, layers;
+    double tool_mm[ISO_TOOLS_MOST]; /* of filament; with several tools */
+    int64_t tool_changes;
     int64_t bytes;
 } iso_gcode_totals;
 

@@ -76,6 +76,7 @@ typedef struct iso_lattice_options {
     int32_t map;                /* iso_lattice_map */
     const char *cell;           /* mm, edge of a cell */
     const char *density;        /* percent */
+    const char *material;       /* percent of the second of two materials; "" or NULL: one alone */
     uint64_t seed;              /* of what is random */
     double pore;                /* of VOXEL_RANDOM: cells across a usual pore, 0.05 to 1 */
     const char *file;           /* of VOXEL_FILE; else not looked at */

@@ -254,6 +254,9 @@ ISO_OPTION(
     lattice_density, TEXT, "", "%", 0, 0, "Lattices",
     "Density of a lattice: a number, or an expression as for lattice_cell. Empty takes fill_density.")
 ISO_OPTION(
+    lattice_material, TEXT, "", "%", 0, 0, "Lattices",
+    "Share of the second material, tool 1: a number, or an expression as for lattice_cell; cell by cell. Empty: one material.")
+ISO_OPTION(
     lattice_map, MAP, "xyz", "", 0, 0, "Lattices",
     "Along what the cells lie: xyz; around the part's axis (cylinder), its middle (sphere); or along its surface (skin, skin_cylinder).")
 ISO_OPTION(lattice_seed, INTEGER, "0", "", 0, 1000000, "Lattices",
@@ -542,6 +545,9 @@ ISO_OPTION(start_filament_gcode, TEXT, "", "", 0, 0, "G-code",
            "What comes after start_gcode, for the filament, with macros.")
 ISO_OPTION(end_filament_gcode, TEXT, "", "", 0, 0, "G-code",
            "What comes before end_gcode, for the filament, with macros.")
+ISO_OPTION(
+    toolchange_gcode, TEXT, "", "", 0, 0, "G-code",
+    "What comes before the nozzle is changed, with macros; previous_extruder and next_extruder are known. The command itself follows unless it is in here.")
 ISO_OPTION(between_objects_gcode, TEXT, "", "", 0, 0, "G-code",
            "What comes between objects that are printed one by one, with macros.")
 ISO_OPTION(colorprint_heights, NUMBERS, "", "mm", 0, 10000, "G-code",

@@ -248,6 +248,7 @@ iso_lattice_options settings_of_lattice(const iso_options *options, char percent
                                  .cell = options->lattice_cell,
                                  .density = options->lattice_density[0] ? options->lattice_density
                                                                         : percent,
+                                 .material = options->lattice_material,
                                  .seed = (uint64_t)options->lattice_seed,
                                  .pore = options->lattice_pore,
                                  .file = options->lattice_file,

@@ -97,6 +97,7 @@ static const struct {
     TEXT(ISO_TEXT_BEFORE_LAYER, before_layer_gcode, true),
     TEXT(ISO_TEXT_LAYER, layer_gcode, true),
     TEXT(ISO_TEXT_BETWEEN_OBJECTS, between_objects_gcode, true),
+    TEXT(ISO_TEXT_TOOLCHANGE, toolchange_gcode, true),
     TEXT(ISO_TEXT_COLOR_CHANGE, color_change_gcode, true),
     TEXT(ISO_TEXT_PAUSE, pause_print_gcode, true),
     TEXT(ISO_TEXT_TEMPLATE, template_custom_gcode, true),
@@ -124,10 +125,14 @@ iso_status texts_write(char *text, size_t size, const void *payload, iso_gcode_t
     const iso_macro_number number[] = {{"color_change_extruder", 0, true},
                                        {"layer_num", place->layer, true},
                                        {"layer_z", place->z, false},
-                                       {"max_layer_z", place->max_z, false}};
+                                       {"max_layer_z", place->max_z, false},
+                                       {"previous_extruder", place->tool, true},
+                                       {"next_extruder", place->next_tool, true},
+                                       {"toolchange_z", place->z, false},
+                                       {"toolchange_count", place->tool_changes, true}};
     iso_macro_scope scope = texts->scope;
     scope.number = number;
-    scope.number_count = table[kind].of_layer ? 4 : 0;
+    scope.number_count = kind == ISO_TEXT_TOOLCHANGE ? 8 : table[kind].of_layer ? 4 : 0;
     return iso_macro_expand(text, size, from, table[kind].name, &scope);
 }
 

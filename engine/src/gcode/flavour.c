@@ -104,9 +104,13 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                            RETRACTION,
                            .units = UNITS,
                            .acceleration = "M204 S#"},
-    [ISO_FLAVOUR_SAILFISH] = {.name = "sailfish", MAKERBOT, .units = UNITS},
-    [ISO_FLAVOUR_MAKERWARE] =
-        {.name = "makerware", MAKERBOT, .units = "", .retracted = "M103", .deretracting = "M101"},
+    [ISO_FLAVOUR_SAILFISH] = {.name = "sailfish", MAKERBOT, .units = UNITS, .tool = "M108 T#"},
+    [ISO_FLAVOUR_MAKERWARE] = {.name = "makerware",
+                               MAKERBOT,
+                               .units = "",
+                               .retracted = "M103",
+                               .deretracting = "M101",
+                               .tool = "M135 T#"},
     [ISO_FLAVOUR_NO_EXTRUSION] = {.name = "no-extrusion",
                                   HEATING,
                                   FAN,
@@ -126,6 +130,29 @@ char *iso_flavour_put(char *to, const char *command, int64_t number, int decimal
         else
             *to++ = *command;
     return to;
+}
+
+/* Behind the first line's words, instead of a tool that is named there. */
+char *iso_flavour_put_for_tool(char *to, const char *command, int64_t number, int32_t tool) {
+    char line[64];
+    size_t end = strcspn(command, "\n");
+    char letter = 'T';
+    const char *rest = command + end;
+    if (end > 3 && command[end - 1] == '0' && strchr("TP", command[end - 2])) {
+        letter = command[end - 2];
+        end -= 3;
+    }
+    memcpy(line, command, end);
+    line[end] = '\0';
+    to = iso_flavour_put(to, line, number, 0);
+    *to++ = ' ';
+    *to++ = letter;
+    to = iso_put_decimal(to, tool, 0);
+    return iso_flavour_put(to, rest, number, 0);
+}
+
+char *iso_flavour_put_tool(char *to, const iso_flavour_words *of, int32_t tool) {
+    return iso_flavour_put(to, of->tool ? of->tool : "T#", tool, 0);
 }
 
 iso_status iso_flavour_from_name(iso_flavour *flavour, const char *name) {

@@ -33,6 +33,7 @@ typedef struct iso_flavour_words {
     const char *travel_acceleration;      /* NULL: the one for all moves */
     const char *volumetric;               /* E in mm^3, # the filament's diameter in mm */
     const char *pause, *color_change;     /* if the user's texts are empty */
+    const char *tool;                     /* takes another; NULL: T# */
     iso_limits_dialect limits;
     iso_label_dialect labels;
     int progress; /* understands M73 */
@@ -42,5 +43,11 @@ const iso_flavour_words *iso_flavour_get_words(iso_flavour flavour);
 
 /* The command with the number, in `decimals` decimals, for each #; returns the end. No newline. */
 char *iso_flavour_put(char *to, const char *command, int64_t number, int decimals);
+
+/* The same for one of several nozzles: tool 0 that it names, or a word T, becomes this one. */
+char *iso_flavour_put_for_tool(char *to, const char *command, int64_t number, int32_t tool);
+
+/* The command that takes a tool. */
+char *iso_flavour_put_tool(char *to, const iso_flavour_words *of, int32_t tool);
 
 #endif

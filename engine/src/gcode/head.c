@@ -246,6 +246,19 @@ static void deretract(iso_head *head) {
         move_filament(head, head->deretract_e, head->deretract_feed, "unretract");
 }
 
+void iso_head_take_tool(iso_head *head, int32_t from, int32_t to) {
+    const char *reset = head->modes.words->reset_e;
+    head->retracted_tool[from] = head->retracted;
+    head->retracted = head->retracted_tool[to];
+    head->wipe.count = 0;
+    head->z = head->feed = UNKNOWN;
+    head->doubtful = 1;
+    if (head->relative_e || !reset)
+        return;
+    head->e = 0;
+    iso_modes_say(&head->modes, reset, 0, "of another filament");
+}
+
 static void move_z(iso_head *head, int32_t z, const char *comment) {
     if (z == head->z)
         return;
@@ -290,10 +303,11 @@ static void move_flat(iso_head *head, int32_t x, int32_t y) {
     p = iso_put_thousandths(p, y);
     p = put_feed(head, p, head->travel_feed);
     iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, "travel"));
-    if (head->x != UNKNOWN)
+    if (head->x != UNKNOWN && !(head->doubtful && x == head->x && y == head->y))
         plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
     head->x = x;
     head->y = y;
+    head->doubtful = 0;
 }
 
 static double mm_of_way(const iso_point *way, int32_t count) {
@@ -319,7 +333,7 @@ static int is_long(const iso_head *head, const iso_path *path, const iso_point *
 static void travel(iso_head *head, const iso_path *path, const iso_point *way, iso_point to,
                    int32_t z) {
     int32_t x = to_micrometres(to.x), y = to_micrometres(to.y);
-    int known = head->x != UNKNOWN, away = x != head->x || y != head->y;
+    int known = head->x != UNKNOWN, away = x != head->x || y != head->y || head->doubtful;
     if (!known || (away && path->retract != ISO_RETRACT_NOT && is_long(head, path, way, to)))
         iso_head_retract(head);
     if (away) {

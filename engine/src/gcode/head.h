@@ -40,9 +40,11 @@ typedef struct iso_head {
     int32_t area;                /* of the bead last drawn */
     int32_t layer_height;        /* units */
     int retracted;
-    const iso_arc *arc, *arc_end; /* of the layer, those to come */
-    iso_wipe wipe;                /* of the path last drawn, if it is asked for */
-    double wipe_length;           /* units: of a whole wipe; 0: none */
+    int doubtful;                       /* the place is to be said even if nothing changes */
+    int retracted_tool[ISO_TOOLS_MOST]; /* of those that aren't in use */
+    const iso_arc *arc, *arc_end;       /* of the layer, those to come */
+    iso_wipe wipe;                      /* of the path last drawn, if it is asked for */
+    double wipe_length;                 /* units: of a whole wipe; 0: none */
 
     double bead_mm, travel_mm;
     int64_t moves, retractions;
@@ -62,6 +64,10 @@ void iso_head_forget_place(iso_head *head);
 void iso_head_reach_layer(iso_head *head);
 
 void iso_head_retract(iso_head *head);
+
+/* The tool in use is another, its filament as it was left. The nozzle ought to be where the last
+ * one was, but where it is will be said anew. Absolute E begins at 0 again. */
+void iso_head_take_tool(iso_head *head, int32_t from, int32_t to);
 
 /* Up to a height over all that stands; the next travel stays there until it is where it goes. */
 void iso_head_rise_above(iso_head *head, int32_t z);

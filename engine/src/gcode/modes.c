@@ -6,6 +6,7 @@ void iso_modes_start(iso_modes *modes, iso_lines *lines, const iso_gcode_options
     *modes = (iso_modes){.lines = lines,
                          .words = iso_flavour_get_words(options->flavour),
                          .comments = options->gcode_comments,
+                         .tools = options->tools,
                          .fan = -1};
 }
 
@@ -26,11 +27,25 @@ void iso_modes_set_fan(iso_modes *modes, int percent) {
         iso_modes_say(modes, modes->words->fan_off, 0, "fan off");
 }
 
+void iso_modes_heat_tool(iso_modes *modes, int32_t tool, int degrees, int wait) {
+    const char *command = wait ? modes->words->nozzle_wait : modes->words->nozzle;
+    if (!command)
+        return;
+    char *p = iso_lines_reserve(modes->lines);
+    p = iso_flavour_put_for_tool(p, command, degrees, tool);
+    iso_lines_accept(modes->lines,
+                     iso_modes_end_line(modes, p, wait ? "wait for the nozzle" : "nozzle"));
+}
+
 void iso_modes_heat_nozzle(iso_modes *modes, int degrees, int wait) {
     const iso_flavour_words *words = modes->words;
     if (degrees <= 0 || (!wait && degrees == modes->nozzle))
         return;
     modes->nozzle = degrees;
+    for (int32_t tool = 0; tool < modes->tools && modes->tools > 1; tool++)
+        iso_modes_heat_tool(modes, tool, degrees, wait);
+    if (modes->tools > 1)
+        return;
     iso_modes_say(modes, wait ? words->nozzle_wait : words->nozzle, degrees,
                   wait ? "wait for the nozzle" : "nozzle");
 }

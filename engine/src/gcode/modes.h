@@ -12,6 +12,7 @@ typedef struct iso_modes {
     int comments; /* behind each command */
     int fan;      /* percent; -1 nobody knows */
     int nozzle, bed;
+    int32_t tools;                             /* whose nozzles are as hot as each other */
     int32_t acceleration, travel_acceleration; /* mm/s^2; 0 nobody knows */
 } iso_modes;
 
@@ -22,6 +23,8 @@ void iso_modes_say(iso_modes *modes, const char *command, int64_t number, const 
 
 void iso_modes_set_fan(iso_modes *modes, int percent);
 void iso_modes_heat_nozzle(iso_modes *modes, int degrees, int wait); /* 0 degrees: nothing */
+/* One of several nozzles, whatever the others are told; 0 degrees: off. */
+void iso_modes_heat_tool(iso_modes *modes, int32_t tool, int degrees, int wait);
 void iso_modes_heat_bed(iso_modes *modes, int degrees, int wait);
 
 /* For beads, and for travel moves; 0: leave it. */

@@ -30,6 +30,9 @@ struct iso_gcode_writer {
     double next_mark; /* of the progress, by that clock */
     int32_t highest;  /* units: top of the highest layer so far */
     int32_t object;   /* that labels say is being printed; -1 none */
+    int32_t tool;     /* in use */
+    int awaited;      /* tools that needn't be waited for to be hot, as bits */
+    double tool_mm[ISO_TOOLS_MOST];
     iso_gcode_place place;
     iso_progress progress;
     iso_events events;
@@ -61,26 +64,16 @@ static void label_object(iso_gcode_writer *w, int32_t object) {
     w->object = object;
 }
 
-static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const iso_path *path,
-                            const iso_layer_pace *pace) {
-    if (path->count < 2)
-        return ISO_OK;
-    if (w->clock > w->next_mark)
-        ISO_TRY(mark_progress(w));
-    label_object(w, path->role == ISO_ROLE_SKIRT ? -1 : path->object);
-    double drawn_before = w->head.bead_mm;
-    iso_head_draw(&w->head, paths, path, w->length + path->first, pace);
-    w->clock += (w->head.bead_mm - drawn_before) * 60 /
-                pace->feed[iso_speed_slot(path->role, path->speed_class)];
-    return ISO_OK;
-}
-
-static iso_status check_layer(const iso_gcode_layer_info *layer) {
+static iso_status check_layer(const iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
     const iso_paths *paths = layer->paths;
     for (int32_t i = 0; i < paths->count; i++)
         if (paths->path[i].role >= ISO_ROLE_COUNT)
             return iso_fail(ISO_BUG, "layer %d, path %d: there is no role %d", layer->index, i,
                             paths->path[i].role);
+    for (int32_t i = 0; i < paths->count; i++)
+        if (paths->path[i].tool > 0 && paths->path[i].tool >= w->options.tools)
+            return iso_fail(ISO_BUG, "layer %d, path %d: there is no tool %d", layer->index, i,
+                            paths->path[i].tool);
     for (int32_t v = 0; v < paths->vertex_count; v++)
         if ((uint32_t)paths->vertex[v].role >= ISO_ROLE_COUNT)
             return iso_fail(ISO_BUG, "layer %d, vertex %d: there is no role %d", layer->index, v,
@@ -127,6 +120,52 @@ static iso_status put_layer_text(iso_gcode_writer *w) {
 static void put_line(iso_gcode_writer *w, const char *text) {
     char *p = iso_put_text(iso_lines_reserve(&w->lines), text);
     iso_lines_accept(&w->lines, iso_put_newline(p));
+}
+
+/* Filament that the tool in use took since the last change. */
+static void count_filament(iso_gcode_writer *w) {
+    double others = 0;
+    for (int32_t i = 0; i < ISO_TOOLS_MOST; i++)
+        others += i == w->tool ? 0 : w->tool_mm[i];
+    w->tool_mm[w->tool] = iso_head_filament(&w->head) - others;
+}
+
+/* The filament is drawn back, and nothing of it counts as any object. The user's text may take the
+ * tool by itself. */
+static iso_status change_tool(iso_gcode_writer *w, int32_t tool) {
+    char command[32];
+    *iso_flavour_put_tool(command, w->words, tool) = '\0';
+    label_object(w, -1);
+    iso_head_retract(&w->head);
+    count_filament(w);
+    if (!(w->awaited >> tool & 1) && w->head.modes.nozzle > 0)
+        iso_modes_heat_tool(&w->head.modes, tool, w->head.modes.nozzle, 1);
+    w->awaited |= 1 << tool;
+    w->place.tool = w->tool;
+    w->place.next_tool = tool;
+    w->place.tool_changes++;
+    ISO_TRY(put_text(w, ISO_TEXT_TOOLCHANGE));
+    if (!iso_text_has_command(w->text, command))
+        put_line(w, command);
+    iso_head_take_tool(&w->head, w->tool, tool);
+    w->tool = tool;
+    return ISO_OK;
+}
+
+static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const iso_path *path,
+                            const iso_layer_pace *pace) {
+    if (path->count < 2)
+        return ISO_OK;
+    if (w->clock > w->next_mark)
+        ISO_TRY(mark_progress(w));
+    if (path->tool != w->tool)
+        ISO_TRY(change_tool(w, path->tool));
+    label_object(w, path->role == ISO_ROLE_SKIRT ? -1 : path->object);
+    double drawn_before = w->head.bead_mm;
+    iso_head_draw(&w->head, paths, path, w->length + path->first, pace);
+    w->clock += (w->head.bead_mm - drawn_before) * 60 /
+                pace->feed[iso_speed_slot(path->role, path->speed_class)];
+    return ISO_OK;
 }
 
 static iso_status put_event(iso_gcode_writer *w, const iso_event *event) {
@@ -188,7 +227,7 @@ static void change_temperatures(iso_gcode_writer *w, int32_t layer) {
 }
 
 iso_status iso_gcode_layer(iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
-    ISO_TRY(check_layer(layer));
+    ISO_TRY(check_layer(w, layer));
     ISO_TRY(ISO_GROW(w->length, w->length_capacity, layer->paths->vertex_count));
     iso_layer_work work;
     iso_layer_pace pace;
@@ -234,6 +273,9 @@ iso_status iso_gcode_writer_new(iso_gcode_writer **writer, iso_output *output,
     *writer = NULL;
     if (!(options->filament_diameter > 0))
         return iso_fail(ISO_BAD_CONFIG, "filament_diameter: must be greater than 0");
+    if (options->tools > ISO_TOOLS_MOST)
+        return iso_fail(ISO_BUG, "%d tools: there are %d at most", options->tools,
+                        (int)ISO_TOOLS_MOST);
     iso_gcode_writer *w = iso_allocate(sizeof *w);
     if (!w)
         return iso_no_memory(sizeof *w);
@@ -268,6 +310,31 @@ static int heats_bed(const char *text) {
     return iso_text_has_command(text, "M140") || iso_text_has_command(text, "M190");
 }
 
+/* Does a line that begins with the command have the word as well? */
+static int heats_tool(const char *text, const char *command, char letter, int32_t tool) {
+    const char word[] = {' ', letter, (char)('0' + tool), '\0'};
+    for (const char *line = text; *line; line += *line == '\n') {
+        size_t size = strcspn(line, "\n");
+        const char *found = strstr(line, word);
+        if (strncmp(line, command, strlen(command)) == 0 && found && found < line + size)
+            return 1;
+        line += size;
+    }
+    return 0;
+}
+
+/* A start text may heat the first nozzle alone: then the others are heated here, and waited for
+ * where they are first used. */
+static void heat_others(iso_gcode_writer *w, const char *start) {
+    w->awaited = 1;
+    for (int32_t tool = 1; tool < w->options.tools; tool++)
+        if (!heats_nozzle(w, start) || heats_tool(start, "M104", 'T', tool) ||
+            heats_tool(start, "M109", 'T', tool) || heats_tool(start, "G10", 'P', tool))
+            w->awaited |= 1 << tool;
+        else if (w->options.first_layer_temperature > 0)
+            iso_modes_heat_tool(&w->head.modes, tool, w->options.first_layer_temperature, 0);
+}
+
 /* What holds from the start text on. */
 static iso_status put_ways(iso_gcode_writer *w) {
     char *p = iso_put_text(iso_lines_reserve(&w->lines), w->words->units);
@@ -280,6 +347,9 @@ static iso_status put_ways(iso_gcode_writer *w) {
         p = iso_flavour_put(iso_lines_reserve(&w->lines), w->words->volumetric, diameter, 3);
         iso_lines_accept(&w->lines, iso_put_newline(p));
     }
+    if (w->options.tools > 1)
+        iso_lines_accept(&w->lines, iso_put_newline(iso_flavour_put_tool(
+                                        iso_lines_reserve(&w->lines), w->words, 0)));
     return put_text(w, ISO_TEXT_START_FILAMENT);
 }
 
@@ -313,6 +383,7 @@ iso_status iso_gcode_begin(iso_gcode_writer *w) {
     ISO_TRY(put_user_text(w, start));
     if (!heats_nozzle(w, start))
         iso_modes_heat_nozzle(&w->head.modes, o->first_layer_temperature, 1);
+    heat_others(w, start);
     w->head.modes.nozzle = o->first_layer_temperature;
     w->head.modes.bed = o->first_layer_bed_temperature;
     ISO_TRY(put_ways(w));
@@ -323,6 +394,7 @@ static void sum_up(iso_gcode_totals *totals, iso_gcode_writer *w) {
     iso_planner_stop(&w->head.planner);
     double section = pi / 4 * w->options.filament_diameter * w->options.filament_diameter;
     double mm = iso_head_filament(&w->head);
+    count_filament(w);
     *totals = (iso_gcode_totals){.filament_mm = mm,
                                  .filament_cm3 = mm * section / 1000,
                                  .filament_g = mm * section / 1000 * w->options.filament_density,
@@ -336,7 +408,9 @@ static void sum_up(iso_gcode_totals *totals, iso_gcode_writer *w) {
                                  .travel_mm = w->head.travel_mm,
                                  .moves = w->head.moves,
                                  .retractions = w->head.retractions,
-                                 .layers = w->layers};
+                                 .layers = w->layers,
+                                 .tool_changes = w->place.tool_changes};
+    memcpy(totals->tool_mm, w->tool_mm, sizeof totals->tool_mm);
 }
 
 static void put_figure(iso_gcode_writer *w, const char *name, double value) {
@@ -353,16 +427,39 @@ static void put_time(iso_gcode_writer *w, const char *name, double seconds) {
     iso_lines_accept(&w->lines, iso_put_newline(p));
 }
 
+/* What all tools take, or each of several. */
+static void put_filament(iso_gcode_writer *w, const char *name, double value, double mm) {
+    if (w->options.tools < 2) {
+        put_figure(w, name, value);
+        return;
+    }
+    char *p = ISO_PUT(iso_lines_reserve(&w->lines), "; ");
+    p = ISO_PUT(iso_put_text(p, name), " = ");
+    for (int32_t tool = 0; tool < w->options.tools; tool++) {
+        double own = mm > 0 ? value * w->tool_mm[tool] / mm : 0;
+        p = tool > 0 ? ISO_PUT(p, ", ") : p;
+        p = iso_put_decimal(p, (int64_t)(own * 100 + 0.5), 2);
+    }
+    iso_lines_accept(&w->lines, iso_put_newline(p));
+}
+
 static void put_figures(iso_gcode_writer *w, const iso_gcode_totals *sum) {
-    put_figure(w, "filament used [mm]", sum->filament_mm);
-    put_figure(w, "filament used [cm3]", sum->filament_cm3);
-    put_figure(w, "filament used [g]", sum->filament_g);
+    put_filament(w, "filament used [mm]", sum->filament_mm, sum->filament_mm);
+    put_filament(w, "filament used [cm3]", sum->filament_cm3, sum->filament_mm);
+    put_filament(w, "filament used [g]", sum->filament_g, sum->filament_mm);
     if (sum->filament_cost > 0)
         put_figure(w, "filament cost", sum->filament_cost);
     put_figure(w, "total filament used [g]", sum->filament_g);
     put_figure(w, "total filament cost", sum->filament_cost);
     put_time(w, "estimated printing time", sum->time);
     put_time(w, "estimated first layer printing time", sum->first_layer_time);
+}
+
+/* An end text turns off the nozzle in use. */
+static void cool_others(iso_gcode_writer *w) {
+    for (int32_t tool = 0; tool < w->options.tools; tool++)
+        if (tool != w->tool && w->head.modes.nozzle > 0)
+            iso_modes_heat_tool(&w->head.modes, tool, 0, 0);
 }
 
 iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *w,
@@ -374,6 +471,7 @@ iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *w,
     put_line(w, ";TYPE:Custom");
     if (w->options.use_volumetric_e)
         iso_modes_say(&w->head.modes, w->words->volumetric, 0, "E in mm again");
+    cool_others(w);
     ISO_TRY(put_text(w, ISO_TEXT_END_FILAMENT));
     if (w->options.end_gcode)
         ISO_TRY(put_user_text(w, w->options.end_gcode));

@@ -7,11 +7,14 @@
 #include "lattice/cut.h"
 #include "lattice/grading.h"
 #include "lattice/map.h"
+#include "lattice/material.h"
 #include "lattice/space.h"
 
 struct iso_lattice {
     iso_lattice_cell cell;
     iso_grading size, density; /* mm; percent */
+    iso_grading share;         /* percent, of the second material */
+    iso_material material;     /* which each cell is of, if there are two */
     iso_space space;
     iso_cell_map map;
     const iso_lattice_cut *cut; /* NULL: none */
@@ -136,9 +139,30 @@ static double half_of(const iso_lattice *lattice, double density, double size) {
 static uint32_t find_wanted(const iso_lattice *lattice, int32_t kind) {
     uint32_t wanted = map_wants(kind);
     for (int32_t k = 0; k < GRADING_VARIABLES; k++)
-        if (grading_uses(&lattice->size, k) || grading_uses(&lattice->density, k))
+        if (grading_uses(&lattice->size, k) || grading_uses(&lattice->density, k) ||
+            grading_uses(&lattice->share, k))
             wanted |= (uint32_t)1 << k;
     return wanted;
+}
+
+/* Cells of one size, along x, y and z. */
+static bool is_straight(const iso_lattice *lattice) {
+    return !lattice->size.expression && lattice->map.kind == ISO_LATTICE_MAP_XYZ;
+}
+
+static bool has_two_materials(const iso_lattice_options *options) {
+    return options->material && *options->material;
+}
+
+static iso_status make_material(iso_lattice *lattice) {
+    iso_material_source source = {.space = &lattice->space,
+                                  .map = &lattice->map,
+                                  .size = &lattice->size,
+                                  .share = &lattice->share,
+                                  .wanted = lattice->wanted,
+                                  .smallest = lattice->smallest,
+                                  .straight = is_straight(lattice)};
+    return material_make(&lattice->material, &source);
 }
 
 static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
@@ -147,6 +171,8 @@ static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
         return iso_fail(ISO_BAD_CONFIG, "there is no lattice_map %d", (int)options->map);
     ISO_TRY(grading_make(&lattice->size, options->cell, "lattice_cell"));
     ISO_TRY(grading_make(&lattice->density, options->density, "lattice_density"));
+    if (has_two_materials(options))
+        ISO_TRY(grading_make(&lattice->share, options->material, "lattice_material"));
     lattice->wanted = find_wanted(lattice, options->map);
     ISO_TRY(space_make(&lattice->space, options, lattice->wanted, mesh, count));
     ISO_TRY(check_sizes(lattice, options->map));
@@ -158,7 +184,7 @@ static iso_status make(iso_lattice *lattice, const iso_lattice_options *options,
         lattice->samples[k] = (double)lattice->cell.size[k] / lattice->cell.repeat[k];
     lattice->cut = options->cut && options->cut->count > 0 ? options->cut : NULL;
     lattice->half = half_of(lattice, lattice->density.value, lattice->size.value);
-    return ISO_OK;
+    return has_two_materials(options) ? make_material(lattice) : ISO_OK;
 }
 
 iso_status lattice_new(iso_lattice **lattice, const iso_lattice_options *options,
@@ -180,6 +206,8 @@ void lattice_free(iso_lattice *lattice) {
         return;
     grading_free(&lattice->size);
     grading_free(&lattice->density);
+    grading_free(&lattice->share);
+    material_free(&lattice->material);
     space_free(&lattice->space);
     map_free(&lattice->map);
     cell_free(&lattice->cell);
@@ -190,13 +218,12 @@ const iso_lattice_cell *lattice_cell(const iso_lattice *lattice) {
     return &lattice->cell;
 }
 
-/* Cells of one size, along x, y and z. */
-static bool is_straight(const iso_lattice *lattice) {
-    return !lattice->size.expression && lattice->map.kind == ISO_LATTICE_MAP_XYZ;
-}
-
 int lattice_is_uniform(const iso_lattice *lattice) {
     return is_straight(lattice) && !lattice->density.expression && !lattice->cut;
+}
+
+const iso_material *lattice_material(const iso_lattice *lattice) {
+    return lattice->material.tool ? &lattice->material : NULL;
 }
 
 double lattice_smallest_cell(const iso_lattice *lattice) {
@@ -441,5 +468,27 @@ void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *p
             if (cut_meets(lattice->cut, cut_find(lattice->cut, at), at))
                 value[done + i] = lattice->cut->voxel;
         }
+    }
+}
+
+void lattice_tools(uint8_t *tool, const iso_lattice *lattice, const iso_vec3 *point,
+                   int64_t count) {
+    iso_vec3 origin = lattice->space.origin;
+    iso_cell_places cells;
+    double size[GRADING_BLOCK];
+    for (int64_t done = 0, n; done < count; done += n) {
+        iso_places places;
+        n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
+        for (int64_t i = 0; i < n; i++) {
+            places.value[GRADING_X][i] = point[done + i].x - origin.x;
+            places.value[GRADING_Y][i] = point[done + i].y - origin.y;
+            places.value[GRADING_Z][i] = point[done + i].z - origin.z;
+        }
+        space_know(&places, &lattice->space, lattice->wanted, (int32_t)n);
+        grading_evaluate(size, &lattice->size, places.variable, n);
+        map_cells(cells, &lattice->map, &places, size, (int32_t)n);
+        for (int64_t i = 0; i < n; i++)
+            tool[done + i] =
+                (uint8_t)material_at(&lattice->material, cells[0][i], cells[1][i], cells[2][i]);
     }
 }

@@ -8,6 +8,7 @@
 #include "lattice/cell.h"
 
 typedef struct iso_lattice iso_lattice;
+struct iso_material; /* lattice/material.h */
 
 /* The meshes give the frame and, where an expression or the map asks for it, the distance to the
  * skin; they aren't needed afterwards. ISO_BAD_CONFIG: an expression that can't be read (the
@@ -22,6 +23,9 @@ const iso_lattice_cell *lattice_cell(const iso_lattice *lattice);
 /* Constant cell, density and xyz map: then one cell and one level are all there is. */
 int lattice_is_uniform(const iso_lattice *lattice);
 double lattice_smallest_cell(const iso_lattice *lattice); /* mm, over the part's box */
+
+/* What the cells are of, if there are two materials; else NULL. */
+const struct iso_material *lattice_material(const iso_lattice *lattice);
 
 /* A grid in a plane of height z: node (i, j) is at origin + step (i, j), in the coordinates of the
  * meshes. */
@@ -42,5 +46,8 @@ void lattice_sample_row(double *distance, double *half, const iso_lattice *latti
 /* The same at any points: the signed distance to the material's surface in mm, negative inside. */
 void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *point,
                     int64_t count);
+
+/* The tool, 0 or 1, that prints the cell at any points. */
+void lattice_tools(uint8_t *tool, const iso_lattice *lattice, const iso_vec3 *point, int64_t count);
 
 #endif

@@ -7,6 +7,7 @@
 #include "lattice/contour.h"
 #include "lattice/samples.h"
 #include "lattice/sheet.h"
+#include "lattice/tools.h"
 
 /* units; contours of sections are thinned by so much, and squares so near a region's boundary count
  * as on it. */
@@ -192,6 +193,8 @@ iso_status lattice_fill(iso_paths *out, const iso_region *region, const iso_latt
     if (region->count == 0)
         return ISO_OK;
     iso_status status = fill_all(&f, region);
+    if (status == ISO_OK)
+        status = tools_choose(out, count, vertex_count, slice, scratch);
     iso_arena_pop(scratch, mark);
     if (status != ISO_OK) {
         out->count = count;

@@ -122,7 +122,7 @@ typedef struct fio_statistics {
     double extrusion_length;     /* mm of paths */
     double travel_length;        /* mm of moves in x, y, z without extrusion */
     double retracted_length, unretracted_length; /* mm of filament, summed */
-    double retracted;                            /* mm still retracted now */
+    double retracted;                            /* mm still retracted now, of the tool in use */
     double extrusion_minimum[3],
         extrusion_maximum[3];           /* machine box; valid if extrusion_moves > 0 */
     double highest_flow;                /* mm³/s */

@@ -188,7 +188,11 @@ static void halt(fio_virtual_printer *printer) {
 static void select_tool(fio_virtual_printer *printer, const fio_line *line) {
     if (line->code < printer->options.tools) {
         fio_printer_drain(printer);
+        printer->parked[printer->tool] = printer->statistics.retracted;
+        printer->firmware_parked[printer->tool] = printer->firmware_retracted;
         printer->tool = line->code;
+        printer->statistics.retracted = printer->parked[printer->tool];
+        printer->firmware_retracted = printer->firmware_parked[printer->tool];
         return;
     }
     fio_printer_event_value(printer, FIO_FAULT_BAD_TOOL, "there is no tool ", line->code, "");

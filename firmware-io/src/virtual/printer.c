@@ -106,6 +106,8 @@ static void set_state(fio_virtual_printer *printer) {
     printer->progress_percent = printer->minutes_left = -1;
     printer->last_number = 0;
     printer->tool = 0;
+    memset(printer->parked, 0, sizeof printer->parked);
+    memset(printer->firmware_parked, 0, sizeof printer->firmware_parked);
 }
 
 void fio_printer_reset(fio_virtual_printer *printer) {

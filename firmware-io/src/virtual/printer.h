@@ -47,6 +47,8 @@ struct fio_virtual_printer {
     double fan;
     double firmware_retract[2], firmware_retracted; /* mm now retracted by G10 */
     int tool, progress_percent, minutes_left;
+    double parked[FIO_TOOLS_MOST], firmware_parked[FIO_TOOLS_MOST]; /* mm retracted, of the tools
+                                                                     * that aren't in use */
 
     double extrusion_z; /* of the last level extrusion */
     double filament_area;
