@@ -127,6 +127,21 @@ static void test_numbers_out_of_range_are_refused_and_change_nothing(void) {
     CHECK(memcmp(&options, &other, sizeof options) == 0);
 }
 
+static void test_the_ends_of_every_range_can_be_said(void) {
+    iso_options_defaults(&other);
+    for (int32_t i = 0; i < iso_option_count(); i++) {
+        const iso_option_info *info = iso_option_at(i);
+        if ((info->kind != ISO_VALUE_INTEGER && info->kind != ISO_VALUE_NUMBER) ||
+            iso_option_word(i, 0))
+            continue;
+        char number[32];
+        iso_number_write(number, info->min);
+        CHECK_OK(iso_options_set(&other, info->key, number, "lowest"));
+        iso_number_write(number, info->max);
+        CHECK_OK(iso_options_set(&other, info->key, number, "highest"));
+    }
+}
+
 static void test_messages_say_where_what_and_what_is_allowed(void) {
     CHECK_STATUS(ISO_BAD_CONFIG, iso_options_set(&options, "layer_height", "7", "--layer-height"));
     CHECK(strcmp(iso_error_message(),
@@ -454,6 +469,7 @@ int main(void) {
     RUN(test_every_default_is_in_range_and_in_its_shortest_form);
     RUN(test_keys_are_found_with_either_dash_and_only_once);
     RUN(test_numbers_out_of_range_are_refused_and_change_nothing);
+    RUN(test_the_ends_of_every_range_can_be_said);
     RUN(test_messages_say_where_what_and_what_is_allowed);
     RUN(test_wrong_values_are_refused);
     RUN(test_values_have_prusaslicers_forms);
