@@ -176,10 +176,11 @@ static void test_threads(void) {
     }
 }
 
-/* What is cut is void, in rows and at points, and nothing else is. */
+/* What is cut is void, in rows and at points, and nothing else is. Runs may touch. */
 static void test_cut(void) {
-    static const iso_lattice_run run[] = {{3, 2, 1, 4}, {3, 2, 7, 8}, {3, 5, 0, 2}, {4, 2, 0, 99}};
-    const iso_lattice_cut cut = {{-20, -15, 0.5}, 1, 4, run};
+    static const iso_lattice_run run[] = {
+        {3, 2, 1, 3}, {3, 2, 3, 4}, {3, 2, 7, 8}, {3, 5, 0, 2}, {4, 2, 0, 99}};
+    const iso_lattice_cut cut = {{-20, -15, 0.5}, 1, 5, run};
     iso_lattice_options options = iso_lattice_defaults();
     options.density = "100";
     options.cut = &cut;
@@ -203,6 +204,26 @@ static void test_cut(void) {
     lattice_free(lattice);
 }
 
+/* Nodes on the edge of what is cut fall to one side, whichever piece of the row they are in. */
+static void test_pieces_of_cut_rows(void) {
+    static const iso_lattice_run run[] = {{0, 0, 10, 20}, {0, 0, 31, 77}, {0, 0, 150, 301}};
+    const iso_lattice_cut cut = {{-19.95, 0, 0}, 0.1, 3, run};
+    static double distance[401], half[401], piece[2];
+    for (int graded = 0; graded < 2; graded++) {
+        iso_lattice_options options = iso_lattice_defaults();
+        options.density = graded ? "x + 50" : "50";
+        options.cut = &cut;
+        iso_lattice *lattice = made(&options);
+        const iso_lattice_plane plane = {{100, 65}, 0.1, 7, 401, 1};
+        lattice_sample_row(distance, half, lattice, &plane, 0, 0, 401);
+        for (int first = 0; first < 401; first++) {
+            lattice_sample_row(piece, piece + 1, lattice, &plane, 0, first, 1);
+            CHECK(distance[first] == piece[0] && half[first] == piece[1]);
+        }
+        lattice_free(lattice);
+    }
+}
+
 int main(void) {
     const double side[3] = {40, 30, 20}, at[3] = {100, 50, 7};
     CHECK_OK(part_box(&box, side, at));
@@ -213,6 +234,7 @@ int main(void) {
     RUN(test_no_memory);
     RUN(test_threads);
     RUN(test_cut);
+    RUN(test_pieces_of_cut_rows);
     iso_mesh_free(&box);
     return check_verdict();
 }

@@ -391,13 +391,18 @@ static void find_halves(double *half, const double *unit, const iso_lattice *lat
         half[i] = unit[i] > 0 ? half_of(lattice, density[i], unit[i]) : -HUGE_VAL;
 }
 
+/* In the frame; depends on the node alone, wherever a piece of its row begins. */
+static double x_of_node(const iso_lattice *lattice, const iso_lattice_plane *plane, int32_t node) {
+    return plane->origin.x + plane->step * node - lattice->space.origin.x;
+}
+
 /* Void where the cut says so: as deep in it as a voxel is long. Runs are walked along the row. */
 static void cut_row(double *distance, double *half, const iso_lattice *lattice, iso_vec3 at,
-                    double step, int32_t count) {
+                    const iso_lattice_plane *plane, int32_t first, int32_t count) {
     const iso_lattice_cut *cut = lattice->cut;
-    double begin = at.x;
+    at.x = x_of_node(lattice, plane, first);
     for (int64_t i = 0, run = cut_find(cut, at); i < count; i++) {
-        at.x = begin + step * (double)i;
+        at.x = x_of_node(lattice, plane, first + (int32_t)i);
         while (run < cut->count && cut_is_before(cut, run, at))
             run++;
         if (!cut_meets(cut, run, at))
@@ -408,10 +413,10 @@ static void cut_row(double *distance, double *half, const iso_lattice *lattice, 
 }
 
 /* Nodes in the frame, at most a block, from `at` along x. */
-static void place_nodes(iso_places *places, iso_vec3 at, const iso_lattice_plane *plane,
-                        double origin, int32_t first, int32_t count) {
+static void place_nodes(iso_places *places, const iso_lattice *lattice, iso_vec3 at,
+                        const iso_lattice_plane *plane, int32_t first, int32_t count) {
     for (int32_t i = 0; i < count; i++) {
-        places->value[GRADING_X][i] = plane->origin.x + plane->step * (first + i) - origin;
+        places->value[GRADING_X][i] = x_of_node(lattice, plane, first + i);
         places->value[GRADING_Y][i] = at.y;
         places->value[GRADING_Z][i] = at.z;
     }
@@ -427,13 +432,12 @@ void lattice_sample_row(double *distance, double *half, const iso_lattice *latti
     if (lattice_is_uniform(lattice))
         return;
     iso_vec3 origin = lattice->space.origin;
-    iso_vec3 at = {plane->origin.x - origin.x + plane->step * first,
-                   plane->origin.y + plane->step * row - origin.y, plane->z - origin.z};
+    iso_vec3 at = {0, plane->origin.y + plane->step * row - origin.y, plane->z - origin.z};
     double unit[GRADING_BLOCK];
     for (int32_t done = 0, n; done < count && !even; done += n) {
         iso_places places;
         n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
-        place_nodes(&places, at, plane, origin.x, first + done, n);
+        place_nodes(&places, lattice, at, plane, first + done, n);
         space_know(&places, &lattice->space, lattice->wanted, n);
         for (int32_t i = 0; i < n && straight; i++)
             unit[i] = lattice->size.value;
@@ -442,7 +446,7 @@ void lattice_sample_row(double *distance, double *half, const iso_lattice *latti
         find_halves(half + done, unit, lattice, &places, n);
     }
     if (lattice->cut)
-        cut_row(distance, half, lattice, at, plane->step, count);
+        cut_row(distance, half, lattice, at, plane, first, count);
 }
 
 void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *point,
