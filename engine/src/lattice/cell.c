@@ -115,12 +115,3 @@ double cell_distance(const iso_lattice_cell *cell, double u, double v, double w)
                    in_box(v, cell->size[1], cell->repeat[1]),
                    in_box(w, cell->size[2], cell->repeat[2]));
 }
-
-void cell_plane(float *plane, const iso_lattice_cell *cell, double w) {
-    iso_cell_place z = cell_place(in_box(w, cell->size[2], cell->repeat[2]), cell->size[2]);
-    int64_t count = (int64_t)cell->size[0] * cell->size[1];
-    const float *low = cell->distance + count * z.low, *high = cell->distance + count * z.high;
-    float part = (float)z.part;
-    for (int64_t i = 0; i < count; i++)
-        plane[i] = low[i] + part * (high[i] - low[i]);
-}

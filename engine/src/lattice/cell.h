@@ -59,36 +59,6 @@ static inline iso_cell_place cell_place(double u, int32_t size) {
     return (iso_cell_place){low & (size - 1), (low + 1) & (size - 1), u - low};
 }
 
-/* What a layer of even height needs: the table at one w, [size0 size1], interpolated. */
-void cell_plane(float *plane, const iso_lattice_cell *cell, double w);
-
-/* The same at one v of that plane, [size0]: along it g is linear from sample to sample. */
-static inline void cell_row(float *row, const float *plane, const iso_lattice_cell *cell,
-                            double v) {
-    iso_cell_place y = cell_place(v * cell->size[1] / cell->repeat[1], cell->size[1]);
-    const float *low = plane + (int64_t)cell->size[0] * y.low;
-    const float *high = plane + (int64_t)cell->size[0] * y.high;
-    float part = (float)y.part;
-    for (int32_t i = 0; i < cell->size[0]; i++)
-        row[i] = low[i] + part * (high[i] - low[i]);
-}
-
-static inline double cell_row_at(const float *row, const iso_lattice_cell *cell, double u) {
-    iso_cell_place x = cell_place(u * cell->size[0] / cell->repeat[0], cell->size[0]);
-    return row[x.low] + x.part * (row[x.high] - row[x.low]);
-}
-
-static inline double cell_plane_at(const float *plane, const iso_lattice_cell *cell, double u,
-                                   double v) {
-    iso_cell_place x = cell_place(u * cell->size[0] / cell->repeat[0], cell->size[0]);
-    iso_cell_place y = cell_place(v * cell->size[1] / cell->repeat[1], cell->size[1]);
-    const float *p = plane + (int64_t)cell->size[0] * y.low;
-    const float *q = plane + (int64_t)cell->size[0] * y.high;
-    double a = p[x.low] + x.part * (p[x.high] - p[x.low]);
-    double b = q[x.low] + x.part * (q[x.high] - q[x.low]);
-    return a + y.part * (b - a);
-}
-
 /* As cell_distance, for coordinates in samples that are less than 2^31 from 0. */
 static inline double cell_at(const iso_lattice_cell *cell, double u, double v, double w) {
     iso_cell_place x = cell_place(u, cell->size[0]), y = cell_place(v, cell->size[1]),
