@@ -167,6 +167,98 @@ static void test_round_maps(void) {
     }
 }
 
+/* Turns have a whole number of cells, as many as fit at the volume's mean radius: 25 1/3 mm of the
+ * tube make 63.67 of 2.5 mm. */
+static void test_cells_around(void) {
+    iso_lattice_options options = iso_lattice_defaults();
+    options.map = ISO_LATTICE_MAP_CYLINDER;
+    options.cell = "2.5";
+    iso_lattice *lattice = made(&options, &tube);
+    for (int cells = 63; cells <= 65; cells++) {
+        double worst = 0;
+        for (int k = 0; k < 100; k++) {
+            double sine[2], cosine[2], value[2], angle = 6.283185307179586 * (k + 0.3) / 100;
+            iso_vec3 point[2];
+            for (int i = 0; i < 2; i++) {
+                series_sine_cosine(&sine[i], &cosine[i], angle + i * 6.283185307179586 / cells);
+                point[i] = (iso_vec3){30 + 27 * cosine[i], 40 + 27 * sine[i], 3.3};
+            }
+            lattice_sample(value, lattice, point, 2);
+            worst = fmax(worst, fabs(value[0] - value[1]));
+        }
+        CHECK(cells == 64 ? worst < 1e-4 : worst > 0.01);
+    }
+    lattice_free(lattice);
+}
+
+/* Around an axis cells are longer outside and shorter inside, and at a globe's height shorter
+ * still: distances are mm for all that, so they change by 1 mm a mm near the surface. */
+static void test_lengths_around(void) {
+    for (int32_t map = ISO_LATTICE_MAP_CYLINDER; map <= ISO_LATTICE_MAP_SPHERE; map++)
+        for (int outer = 0; outer < 2; outer++) {
+            iso_lattice_options options = iso_lattice_defaults();
+            options.map = map;
+            options.cell = "2.5";
+            options.pattern = ISO_LATTICE_GYROID_SOLID;
+            options.density = "50";
+            iso_lattice *lattice = made(&options, &tube);
+            double sum = 0, r = outer ? 30 : 18;
+            int count = 0;
+            for (int k = 0; k < 20000; k++) {
+                double sine, cosine, value[7], step = 0.05, square = 0;
+                series_sine_cosine(&sine, &cosine, uniform(0, 6.283185307179586));
+                iso_vec3 at = {30 + r * cosine, 40 + r * sine, uniform(15, 25)};
+                iso_vec3 point[7] = {at, at, at, at, at, at, at};
+                point[1].x -= step, point[2].x += step, point[3].y -= step;
+                point[4].y += step, point[5].z -= step, point[6].z += step;
+                lattice_sample(value, lattice, point, 7);
+                if (fabs(value[0]) > 0.1)
+                    continue;
+                for (int a = 1; a < 7; a += 2) {
+                    double slope = (value[a + 1] - value[a]) / (2 * step);
+                    square += slope * slope;
+                }
+                sum += sqrt(square);
+                count++;
+            }
+            CHECK(count > 1000);
+            CHECK_NEAR(1, sum / count, 0.03);
+            lattice_free(lattice);
+        }
+}
+
+/* A part's cells begin where x, y and z are 0, in its middle, also where they are counted. */
+static void test_origin_of_counted_cells(void) {
+    iso_lattice_options options = iso_lattice_defaults();
+    options.pattern = ISO_LATTICE_BCC_STRUTS;
+    options.cell = "ramp(x, -20, 20, 2, 3)";
+    iso_lattice *lattice = made(&options, &box);
+    iso_vec3 node = {0, 0, 0};
+    double value;
+    lattice_sample(&value, lattice, &node, 1); /* as deep in a strut as one can be */
+    CHECK_NEAR(-cell_level(lattice_cell(lattice), 0.2) * 2.5, value, 1e-3);
+    lattice_free(lattice);
+}
+
+/* Walls that stand upright on a line through the axis don't reach it: these boxes come within 10 mm
+ * of it, and are 15 or so away on the whole. */
+static void test_walls_along_radii(void) {
+    const double side[3] = {10, 10, 10}, at[2][3] = {{10, 0, 0}, {-20, -10, 0}};
+    iso_mesh part[2];
+    CHECK_OK(part_box(&part[0], side, at[0]));
+    CHECK_OK(part_box(&part[1], side, at[1]));
+    iso_lattice_options options = iso_lattice_defaults();
+    options.map = ISO_LATTICE_MAP_CYLINDER;
+    options.cell = "2";
+    iso_lattice *lattice;
+    CHECK_OK(lattice_new(&lattice, &options, part, 2));
+    double smallest = lattice_smallest_cell(lattice);
+    CHECK(smallest > 1.2 && smallest < 1.3);
+    lattice_free(lattice);
+    iso_mesh_free(&part[0]);
+    iso_mesh_free(&part[1]);
+}
+
 /* Nothing is torn where the angle jumps, neither cells that repeat by themselves nor boxes of
  * several. The length that distances are told in goes by the slope, which jumps a little where
  * samples meet; the surface doesn't. */
@@ -201,6 +293,10 @@ int main(int count, char **argument) {
         RUN(test_density_ramp);
         RUN(test_counted_cells);
         RUN(test_seam);
+        RUN(test_cells_around);
+        RUN(test_lengths_around);
+        RUN(test_origin_of_counted_cells);
+        RUN(test_walls_along_radii);
     } else {
         RUN(test_ramps_of_cells);
         RUN(test_round_maps);

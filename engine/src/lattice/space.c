@@ -29,7 +29,7 @@ static double square_to_segment(iso_vec2 a, iso_vec2 b) {
     return x * x + y * y;
 }
 
-/* The same to a triangle; 0 where it covers the origin. */
+/* The same to a triangle; 0 where it covers the origin. Upright ones cover nothing. */
 static double square_to_triangle(const iso_vec2 corner[3]) {
     double least = HUGE_VAL;
     int left = 0, right = 0;
@@ -40,7 +40,7 @@ static double square_to_triangle(const iso_vec2 corner[3]) {
         right += side <= 0;
         least = lesser(least, square_to_segment(a, b));
     }
-    return left == 3 || right == 3 ? 0 : least;
+    return (left == 3) != (right == 3) ? 0 : least;
 }
 
 /* Sums over the volume, by the divergence theorem: div(r (x, y, 0)) = 3 r, div(R (x, y, z)) = 4 R,
