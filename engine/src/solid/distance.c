@@ -1,7 +1,6 @@
-/* From the box of everything down to one voxel, always in two or in eight, with the list of
- * triangles that may still be nearest to some voxel in it: where the nearest one is at distance d
- * from the middle of voxels that lie within r of it, all at more than d + 2 r drop out. Beyond the
- * wanted distance nothing is looked at any more.
+/* From the box of everything down to one voxel, always in two, with the distance from the middle to
+ * the nearest triangle: what is farther off than wanted is left at once, and along the voxels of a
+ * block each one's nearest triangle is the next one's first guess.
  *
  * A box that the surface stays clear of is on one side of it, so one question tells the sign of
  * all. A block that it passes through is taken apart: no surface comes between two voxels whose
@@ -13,16 +12,13 @@
 #include <stdbool.h>
 
 #include "base/memory.h"
+#include "solid/closest.h"
 #include "solid/enclosed.h"
 #include "solid/volume_table.h"
 
-enum { EDGE = VOLUME_EDGE, CELLS = VOLUME_CELLS, WAITING_MAX = 64 };
+enum { EDGE = VOLUME_EDGE, CELLS = VOLUME_CELLS, WAITING_MAX = 64, FEW_MAX = 40 };
 
 typedef enum side { UNKNOWN, OUTSIDE, INSIDE } side;
-
-typedef struct ball {
-    double x, y, z, radius; /* around a triangle */
-} ball;
 
 /* A block that the surface passes through; its signs wait for answers. */
 typedef struct waiting_block {
@@ -36,7 +32,8 @@ typedef struct walk {
     const iso_volume_surface *surface;
     const distance_output *output;
     iso_arena *arena;
-    ball *bound;
+    iso_closest *tree;
+    int32_t nearest;        /* triangle of the last point: the first guess at the next one */
     waiting_block *waiting; /* [WAITING_MAX] */
     iso_vec3 *question;     /* [WAITING_MAX CELLS] */
     uint8_t *answer;
@@ -45,109 +42,6 @@ typedef struct walk {
     void *payload;
 } walk;
 
-/* A box of voxels, and the triangles that count there. */
-typedef struct candidates {
-    int32_t *triangle;
-    double *square;
-    int64_t count;
-    double nearest; /* from the middle; infinite: none */
-} candidates;
-
-// One triangle
-
-static iso_vec3 minus(iso_vec3 a, iso_vec3 b) {
-    return (iso_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-static double dot(iso_vec3 a, iso_vec3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static iso_vec3 cross(iso_vec3 a, iso_vec3 b) {
-    return (iso_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/* From a point at p (seen from one end) to an edge. */
-static double to_edge(iso_vec3 p, iso_vec3 edge) {
-    double along = dot(p, edge), length = dot(edge, edge);
-    if (along <= 0 || length <= 0)
-        return dot(p, p);
-    double part = along >= length ? 1 : along / length;
-    iso_vec3 rest = {p.x - part * edge.x, p.y - part * edge.y, p.z - part * edge.z};
-    return dot(rest, rest);
-}
-
-/* A triangle whose height is less than this share of its sides has no plane to speak of; its edges
- * are as near as it is, within that. */
-#define THINNEST 1e-11
-
-double distance_to_triangle(iso_vec3 p, const iso_vec3 corner[3]) {
-    iso_vec3 ab = minus(corner[1], corner[0]), bc = minus(corner[2], corner[1]);
-    iso_vec3 ca = minus(corner[0], corner[2]);
-    iso_vec3 pa = minus(p, corner[0]), pb = minus(p, corner[1]), pc = minus(p, corner[2]);
-    iso_vec3 normal = cross(bc, ab);
-    double square = dot(normal, normal);
-    double sides = dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
-    if (square > THINNEST * THINNEST * sides * sides && dot(cross(ab, normal), pa) >= 0 &&
-        dot(cross(bc, normal), pb) >= 0 && dot(cross(ca, normal), pc) >= 0) {
-        double height = dot(normal, pa);
-        return height * height / square;
-    }
-    double least = to_edge(pa, ab), other = to_edge(pb, bc);
-    least = other < least ? other : least;
-    other = to_edge(pc, ca);
-    return other < least ? other : least;
-}
-
-static ball find_ball(const iso_vec3 *t) {
-    iso_vec3 middle = {(t[0].x + t[1].x + t[2].x) / 3, (t[0].y + t[1].y + t[2].y) / 3,
-                       (t[0].z + t[1].z + t[2].z) / 3};
-    double square = 0;
-    for (int i = 0; i < 3; i++) {
-        iso_vec3 away = minus(t[i], middle);
-        square = dot(away, away) > square ? dot(away, away) : square;
-    }
-    /* a little larger, so that rounding doesn't make it too small */
-    return (ball){middle.x, middle.y, middle.z, sqrt(square) * (1 + 1e-12)};
-}
-
-// Lists of triangles
-
-/* Those of `from` (NULL: all) that may be nearest to a point within `radius` of `middle`. Left on
- * the arena. */
-static iso_status select_near(candidates *out, const walk *w, const candidates *from,
-                              iso_vec3 middle, double radius) {
-    *out = (candidates){.nearest = INFINITY};
-    int64_t count = from ? from->count : w->surface->count;
-    ISO_TRY(ISO_PUSH(out->triangle, w->arena, count));
-    ISO_TRY(ISO_PUSH(out->square, w->arena, count));
-    double reach = INFINITY; /* nearest + 2 radius, rounded up */
-    int64_t kept = 0;
-    for (int64_t i = 0; i < count; i++) {
-        int32_t t = from ? from->triangle[i] : (int32_t)i;
-        const ball *b = &w->bound[t];
-        double x = middle.x - b->x, y = middle.y - b->y, z = middle.z - b->z;
-        double clear = reach + b->radius;
-        if (x * x + y * y + z * z > clear * clear)
-            continue;
-        double square = distance_to_triangle(middle, w->surface->corner + 3 * (int64_t)t);
-        if (square > reach * reach)
-            continue;
-        out->triangle[kept] = t;
-        out->square[kept++] = square;
-        if (square < out->nearest * out->nearest) {
-            out->nearest = sqrt(square);
-            reach = (out->nearest + 2 * radius) * (1 + 1e-9) + 1e-12;
-        }
-    }
-    for (int64_t i = 0; i < kept; i++)
-        if (out->square[i] <= reach * reach) {
-            out->triangle[out->count] = out->triangle[i];
-            out->square[out->count++] = out->square[i];
-        }
-    return ISO_OK;
-}
-
 static double limit_of(const walk *w, side where) {
     double inner = w->surface->inner, outer = w->surface->outer;
     if (where == UNKNOWN)
@@ -155,47 +49,70 @@ static double limit_of(const walk *w, side where) {
     return where == INSIDE ? inner : outer;
 }
 
-/* One voxel: nothing is left to be chosen. */
-static float measure_one(const walk *w, const candidates *from, const int32_t at[3], double limit) {
-    double voxel = w->surface->voxel, least = limit * limit;
-    iso_vec3 point = {voxel * at[0], voxel * at[1], voxel * at[2]};
-    for (int64_t i = 0; i < from->count; i++) {
-        double square =
-            distance_to_triangle(point, w->surface->corner + 3 * (int64_t)from->triangle[i]);
-        least = square < least ? square : least;
-    }
-    return (float)sqrt(least);
+/* A cube of voxels within a block; `limit`: no more is wanted. */
+typedef struct cube {
+    float *value; /* of the block */
+    double limit;
+    int32_t first[3], size;
+} cube;
+
+static float *place_of(const cube *c, int x, int y, int z) {
+    return c->value + ((c->first[0] & 7) + x) +
+           EDGE * (((c->first[1] & 7) + y) + EDGE * ((c->first[2] & 7) + z));
 }
 
-/* Unsigned distances of a cube of voxels within a block; `limit` where it is more. */
-static iso_status measure(float *value, const walk *w, const candidates *from,
-                          const int32_t first[3], const int32_t size, double limit) {
-    int32_t at = (first[0] & 7) + EDGE * ((first[1] & 7) + EDGE * (first[2] & 7));
-    if (size == 1) {
-        value[at] = measure_one(w, from, first, limit);
-        return ISO_OK;
-    }
-    double voxel = w->surface->voxel, half = (size - 1) * 0.5;
-    iso_vec3 middle = {voxel * (first[0] + half), voxel * (first[1] + half),
-                       voxel * (first[2] + half)};
-    double radius = voxel * half * 1.7320508075688774;
-    iso_arena_mark mark = iso_arena_get_mark(w->arena);
-    candidates near;
-    iso_status status = select_near(&near, w, from, middle, radius);
-    if (status == ISO_OK && near.nearest > limit + radius) {
-        for (int32_t i = 0; i < size * size * size; i++)
-            value[at + i % size + EDGE * (i / size % size + EDGE * (i / (size * size)))] =
-                (float)limit;
-    } else {
-        for (int part = 0; status == ISO_OK && part < 8; part++) {
-            int32_t step = size / 2,
-                    corner[3] = {first[0] + step * (part & 1), first[1] + step * (part >> 1 & 1),
-                                 first[2] + step * (part >> 2)};
-            status = measure(value, w, &near, corner, step, limit);
+static iso_vec3 point_of(const walk *w, const cube *c, double x, double y, double z) {
+    double voxel = w->surface->voxel;
+    return (iso_vec3){voxel * (c->first[0] + x), voxel * (c->first[1] + y),
+                      voxel * (c->first[2] + z)};
+}
+
+/* To and fro, so that every voxel lies beside the one before. count < 0: among all triangles. */
+static void measure_each(walk *w, const cube *c, const int32_t *near, int count) {
+    double most = c->limit * c->limit;
+    for (int z = 0; z < c->size; z++)
+        for (int j = 0; j < c->size; j++) {
+            int y = z & 1 ? c->size - 1 - j : j;
+            for (int i = 0; i < c->size; i++) {
+                int x = j & 1 ? c->size - 1 - i : i;
+                iso_vec3 p = point_of(w, c, x, y, z);
+                double square = count < 0 ? closest_square(w->tree, p, most, &w->nearest)
+                                          : closest_of_few(w->tree, near, count, p, most);
+                *place_of(c, x, y, z) = (float)(square < most ? sqrt(square) : c->limit);
+            }
         }
+}
+
+/* With so many triangles or fewer it's quicker to take them all than to search. */
+static int few_in(int32_t size) {
+    return size == EDGE ? 8 : size == EDGE / 2 ? 24 : FEW_MAX;
+}
+
+/* Where the nearest triangle is at d from the middle of voxels within r of it, only what is within
+ * d + 2 r can be nearest to any of them. */
+static void measure(walk *w, const cube *c) {
+    int32_t near[FEW_MAX];
+    double voxel = w->surface->voxel, half = (c->size - 1) * 0.5;
+    double radius = voxel * half * 1.7320508075688774 * (1 + 1e-9), most = c->limit + radius;
+    iso_vec3 middle = point_of(w, c, half, half, half);
+    double square = closest_square(w->tree, middle, most * most, &w->nearest);
+    double reach = (sqrt(square) + 2 * radius) * (1 + 1e-9) + 1e-12;
+    int count = 0;
+    if (square < most * most)
+        count = closest_gather(near, few_in(c->size), w->tree, middle, reach);
+    if (count <= few_in(c->size)) {
+        measure_each(w, c, near, count);
+    } else if (c->size == EDGE || (c->size > 2 && square < 16 * voxel * voxel)) {
+        cube part = *c;
+        part.size /= 2;
+        for (int i = 0; i < 8; i++) {
+            for (int axis = 0; axis < 3; axis++)
+                part.first[axis] = c->first[axis] + (i >> axis & 1) * part.size;
+            measure(w, &part);
+        }
+    } else {
+        measure_each(w, c, NULL, -1);
     }
-    iso_arena_pop(w->arena, mark);
-    return status;
 }
 
 // Signs
@@ -313,10 +230,11 @@ static iso_status put_full(const walk *w, const box *b) {
     return ISO_OK;
 }
 
-static iso_status visit_block(walk *w, const int32_t block[3], const candidates *near, side where) {
+static iso_status visit_block(walk *w, const int32_t block[3], side where) {
     float value[CELLS];
     const int32_t first[3] = {EDGE * block[0], EDGE * block[1], EDGE * block[2]};
-    ISO_TRY(measure(value, w, near, first, EDGE, limit_of(w, where)));
+    const cube all = {value, limit_of(w, where), {first[0], first[1], first[2]}, EDGE};
+    measure(w, &all);
     if (where == UNKNOWN)
         return queue_block(w, first, value);
     for (int cell = 0; cell < CELLS; cell++)
@@ -324,51 +242,42 @@ static iso_status visit_block(walk *w, const int32_t block[3], const candidates 
     return put_block(w, first, value);
 }
 
-static iso_status visit(walk *w, const box *b, const candidates *from, side where);
+static iso_status visit(walk *w, const box *b, side where);
 
-static iso_status visit_halves(walk *w, const box *b, const candidates *near, side where) {
+static iso_status visit_halves(walk *w, const box *b, side where) {
     int axis = 0;
     for (int i = 1; i < 3; i++)
         if (b->high[i] - b->low[i] > b->high[axis] - b->low[axis])
             axis = i;
+    if (b->high[axis] - b->low[axis] == 1)
+        return visit_block(w, b->low, where);
     box half = *b;
     int32_t middle = b->low[axis] + (b->high[axis] - b->low[axis]) / 2;
     half.high[axis] = middle;
-    ISO_TRY(visit(w, &half, near, where));
+    ISO_TRY(visit(w, &half, where));
     half = *b;
     half.low[axis] = middle;
-    return visit(w, &half, near, where);
+    return visit(w, &half, where);
 }
 
-static iso_status visit_near(walk *w, const box *b, const candidates *near, iso_vec3 middle,
-                             double radius, side where) {
-    /* a little less than clear is not clear: rounding */
-    if (where == UNKNOWN && near->nearest > radius * (1 + 1e-9) + 1e-12)
-        ISO_TRY(ask(&where, w, middle));
-    if (near->nearest > limit_of(w, where) + radius)
-        return where == INSIDE ? put_full(w, b) : ISO_OK;
-    for (int i = 0; i < 3; i++)
-        if (b->high[i] - b->low[i] > 1)
-            return visit_halves(w, b, near, where);
-    return visit_block(w, b->low, near, where);
-}
-
-static iso_status visit(walk *w, const box *b, const candidates *from, side where) {
+static iso_status visit(walk *w, const box *b, side where) {
     double voxel = w->surface->voxel, middle[3], square = 0;
     for (int i = 0; i < 3; i++) {
         double low = EDGE * (double)b->low[i], high = EDGE * (double)b->high[i] - 1;
         middle[i] = voxel * 0.5 * (low + high);
         square += 0.25 * voxel * voxel * (high - low) * (high - low);
     }
-    double radius = sqrt(square);
+    /* a little less than clear is not clear: rounding */
+    double radius = sqrt(square) * (1 + 1e-9) + 1e-12, most = limit_of(w, where) + radius;
     iso_vec3 point = {middle[0], middle[1], middle[2]};
-    iso_arena_mark mark = iso_arena_get_mark(w->arena);
-    candidates near;
-    iso_status status = select_near(&near, w, from, point, radius);
-    if (status == ISO_OK)
-        status = visit_near(w, b, &near, point, radius, where);
-    iso_arena_pop(w->arena, mark);
-    return status;
+    /* no farther than it matters */
+    double nearest = closest_square(w->tree, point, most * most * (1 + 1e-9), &w->nearest);
+    if (where == UNKNOWN && nearest > radius * radius)
+        ISO_TRY(ask(&where, w, point));
+    most = limit_of(w, where) + radius;
+    if (nearest > most * most)
+        return where == INSIDE ? put_full(w, b) : ISO_OK;
+    return visit_halves(w, b, where);
 }
 
 void distance_box(iso_vec3 *min, iso_vec3 *max, const iso_volume_surface *surface) {
@@ -398,18 +307,16 @@ static iso_status walk_all(walk *w) {
         all.low[i] = (int32_t)floor(low[i] / w->surface->voxel / EDGE);
         all.high[i] = (int32_t)floor(high[i] / w->surface->voxel / EDGE) + 1;
     }
-    ISO_TRY(visit(w, &all, NULL, UNKNOWN));
+    ISO_TRY(visit(w, &all, UNKNOWN));
     return settle(w);
 }
 
 static iso_status start_walk(walk *w, enclosed_columns *columns) {
     const iso_volume_surface *surface = w->surface;
-    ISO_TRY(ISO_PUSH(w->bound, w->arena, surface->count));
     ISO_TRY(ISO_PUSH(w->waiting, w->arena, WAITING_MAX));
     ISO_TRY(ISO_PUSH(w->question, w->arena, WAITING_MAX * CELLS));
     ISO_TRY(ISO_PUSH(w->answer, w->arena, WAITING_MAX * CELLS));
-    for (int64_t i = 0; i < surface->count; i++)
-        w->bound[i] = find_ball(surface->corner + 3 * i);
+    ISO_TRY(closest_new(&w->tree, surface->corner, surface->count));
     if (surface->inside)
         return ISO_OK;
     ISO_TRY(enclosed_new(columns, surface->corner, surface->count));
@@ -432,6 +339,7 @@ iso_status distance_fill(const iso_volume_surface *surface, const distance_outpu
     if (status == ISO_OK)
         status = walk_all(&w);
     enclosed_free(&columns);
+    closest_free(w.tree);
     iso_arena_free(&arena);
     return status;
 }

@@ -18,7 +18,4 @@ iso_status distance_fill(const iso_volume_surface *surface,
 /* The box that blocks are looked for in. */
 void distance_box(iso_vec3 *min, iso_vec3 *max, const iso_volume_surface *surface);
 
-/* Square of the distance from p to a triangle, which may be as thin as it likes. */
-double distance_to_triangle(iso_vec3 p, const iso_vec3 corner[3]);
-
 #endif

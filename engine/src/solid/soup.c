@@ -1,16 +1,13 @@
 /* Solid angles, added up. Clusters of triangles that are far away are taken as a dipole and a
  * quadrupole (Barill, Dickson, Schmidt, Levin and Jacobson, Fast Winding Numbers for Soups and
- * Clouds, 2018), so that a point costs O(log n).
- *
- * The tree is a balanced one, halves by the middles along the longer side: no pointers, a node's
- * triangles follow from its number. */
+ * Clouds, 2018), so that a point costs O(log n). */
 #include "solid/soup.h"
 
 #include <math.h>
 
 #include "base/memory.h"
 #include "base/series.h"
-#include "base/sort.h"
+#include "solid/halves.h"
 
 /* Clusters count as far from this many times their radius on. Sums are then off by up to 0.05, and
  * what is asked for is a side of 0.5; 3 would make it 0.02 and take twice as long or more. */
@@ -34,17 +31,6 @@ struct iso_soup {
     iso_vec3 *corner; /* [3 count] by the leaves */
 };
 
-typedef struct place {
-    double key;
-    iso_vec3 middle;
-    int64_t index;
-} place;
-
-static inline int place_less(const place *a, const place *b) {
-    return a->key != b->key ? a->key < b->key : a->index < b->index;
-}
-ISO_SORT(sort_places, place, place_less)
-
 static iso_vec3 subtract(iso_vec3 a, iso_vec3 b) {
     return (iso_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
 }
@@ -62,79 +48,19 @@ static void grow_box(iso_vec3 *min, iso_vec3 *max, iso_vec3 p) {
     *max = (iso_vec3){fmax(max->x, p.x), fmax(max->y, p.y), fmax(max->z, p.z)};
 }
 
-/* First triangle of the `number`th node of a level, from 0. */
 static int64_t first_of(const iso_soup *soup, int level, int64_t number) {
-    return soup->count * number >> level;
-}
-
-/* Put the least `left` places first. Where pivots are bad for long, sorting is no worse. */
-static void halve(place *places, int64_t count, int64_t left) {
-    enum { PATIENCE = 64 };
-    for (int turn = 0; turn < PATIENCE && count > 24; turn++) {
-        place a = places[0], b = places[count / 2], c = places[count - 1];
-        place pivot = place_less(&a, &b) ? (place_less(&b, &c)   ? b
-                                            : place_less(&a, &c) ? c
-                                                                 : a)
-                                         : (place_less(&a, &c)   ? a
-                                            : place_less(&b, &c) ? c
-                                                                 : b);
-        int64_t i = 0, j = count - 1;
-        for (;;) {
-            while (place_less(&places[i], &pivot))
-                i++;
-            while (place_less(&pivot, &places[j]))
-                j--;
-            if (i >= j)
-                break;
-            place kept = places[i];
-            places[i++] = places[j];
-            places[j--] = kept;
-        }
-        if (left <= j) {
-            count = j + 1;
-        } else {
-            places += j + 1;
-            count -= j + 1;
-            left -= j + 1;
-        }
-    }
-    sort_places(places, count);
-}
-
-static void split_node(place *places, int64_t count, int64_t left) {
-    iso_vec3 min = places[0].middle, max = min;
-    for (int64_t i = 1; i < count; i++)
-        grow_box(&min, &max, places[i].middle);
-    iso_vec3 size = subtract(max, min);
-    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    for (int64_t i = 0; i < count; i++) {
-        const iso_vec3 *m = &places[i].middle;
-        places[i].key = axis == 0 ? m->x : axis == 1 ? m->y : m->z;
-    }
-    halve(places, count, left);
+    return halves_first(soup->count, level, number);
 }
 
 /* By the nodes of the last level. */
 static iso_status order(iso_soup *soup, const iso_vec3 *corner) {
-    place *places;
-    ISO_TRY(ISO_ALLOCATE(places, soup->count));
-    for (int64_t i = 0; i < soup->count; i++) {
-        const iso_vec3 *a = &corner[3 * i];
-        places[i] = (place){.middle = {a[0].x + a[1].x + a[2].x, a[0].y + a[1].y + a[2].y,
-                                       a[0].z + a[1].z + a[2].z},
-                            .index = i};
-    }
-    for (int level = 0; level < soup->levels; level++) {
-        for (int64_t node = 0; node < (int64_t)1 << level; node++) {
-            int64_t first = first_of(soup, level, node);
-            split_node(&places[first], first_of(soup, level, node + 1) - first,
-                       first_of(soup, level + 1, 2 * node + 1) - first);
-        }
-    }
-    for (int64_t i = 0; i < soup->count; i++)
-        memcpy(&soup->corner[3 * i], &corner[3 * places[i].index], 3 * sizeof *corner);
-    iso_release(places);
-    return ISO_OK;
+    int32_t *from;
+    ISO_TRY(ISO_ALLOCATE(from, soup->count));
+    iso_status status = halves_order(from, corner, soup->count, soup->levels);
+    for (int64_t i = 0; status == ISO_OK && i < soup->count; i++)
+        memcpy(&soup->corner[3 * i], &corner[3 * (int64_t)from[i]], 3 * sizeof *corner);
+    iso_release(from);
+    return status;
 }
 
 /* Offset times dipole, both ways around. */
