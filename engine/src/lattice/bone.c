@@ -4,7 +4,7 @@
 
 #include "base/angle.h"
 #include "lattice/distance.h"
-#include "lattice/random.h"
+#include "base/random.h"
 
 /* Waves in the box, so that it repeats: all whole vectors whose length is about its length in
  * cells. */

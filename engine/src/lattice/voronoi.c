@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "base/sort.h"
-#include "lattice/random.h"
+#include "base/random.h"
 
 /* With a site in each cell no point is further than sqrt(3) cells from one, so neighbours are no
  * further than twice that from each other: within so many cells each way. */

@@ -7,7 +7,7 @@
 #include "base/series.h"
 #include "lattice/distance.h"
 #include "lattice/family.h"
-#include "lattice/random.h"
+#include "base/random.h"
 
 /* Bars along the edges of the cell: where two of the three coordinates are within half a bar of a
  * plane between cells, so the second of them by size tells. */

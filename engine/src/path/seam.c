@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/random.h"
 #include "path/edges.h"
 
 enum {
@@ -271,19 +272,11 @@ static iso_seam_place rearmost(const iso_path *path, const iso_path_vertex *vert
     return at_vertex(vertex, best);
 }
 
-/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014: its finisher. */
-static uint64_t mix(uint64_t x) {
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
-
 static iso_seam_place anywhere(const iso_path *path, const iso_path_vertex *vertex, uint64_t seed) {
     double all = 0;
     for (int32_t i = 0; i < path->count; i++)
         all += distance(vertex[i].at, vertex[i + 1 < path->count ? i + 1 : 0].at);
-    double left = all * ((double)(mix(seed) >> 11) * 0x1p-53);
+    double left = all * random_unit(&seed);
     for (int32_t i = 0; i < path->count; i++) {
         iso_point a = vertex[i].at, b = vertex[i + 1 < path->count ? i + 1 : 0].at;
         double length = distance(a, b);

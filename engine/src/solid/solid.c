@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/random.h"
 #include "solid/inside.h"
 #include "solid/tree.h"
 
@@ -248,15 +249,12 @@ static iso_status look(int32_t *winding, uint8_t *on_surface, const iso_solid *s
     return ISO_OK;
 }
 
-/* All six in an order that the seed gives (splitmix64, Fisher and Yates). */
+/* All six in an order that the seed gives (Fisher and Yates). */
 static void shuffle(int directions[INSIDE_DIRECTIONS], uint64_t seed) {
     for (int k = 0; k < INSIDE_DIRECTIONS; k++)
         directions[k] = k;
     for (int k = INSIDE_DIRECTIONS - 1; k > 0; k--) {
-        uint64_t z = seed += 0x9e3779b97f4a7c15;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-        int other = (int)((z ^ (z >> 31)) % (uint64_t)(k + 1)), kept = directions[k];
+        int other = (int)(random_next(&seed) % (uint64_t)(k + 1)), kept = directions[k];
         directions[k] = directions[other];
         directions[other] = kept;
     }

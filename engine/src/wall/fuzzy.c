@@ -3,14 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
-
-/* Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014. From 0 up to 1. */
-static double random_number(uint64_t *state) {
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
+#include "base/random.h"
 
 static double length_of(const iso_path_vertex *vertex, int32_t count) {
     double sum = 0;
@@ -34,15 +27,15 @@ static double double_area(const iso_path_vertex *vertex, int32_t count) {
 static int32_t draw(iso_point *point, int32_t room, const iso_path_vertex *vertex, int32_t count,
                     const iso_fuzzy_options *options, uint64_t *random) {
     int32_t n = 0;
-    double rest = random_number(random) * options->distance / 2;
+    double rest = random_unit(random) * options->distance / 2;
     for (int32_t i = 0; i < count; i++) {
         iso_point a = vertex[i].at, b = vertex[i + 1 < count ? i + 1 : 0].at;
         double dx = (double)b.x - a.x, dy = (double)b.y - a.y, length = sqrt(dx * dx + dy * dy);
         for (; rest < length && n < room; n++) {
-            double by = (2 * random_number(random) - 1) * options->thickness;
+            double by = (2 * random_unit(random) - 1) * options->thickness;
             point[n] = (iso_point){(int32_t)floor(a.x + (rest * dx - by * dy) / length + 0.5),
                                    (int32_t)floor(a.y + (rest * dy + by * dx) / length + 0.5)};
-            rest += (0.75 + 0.5 * random_number(random)) * options->distance;
+            rest += (0.75 + 0.5 * random_unit(random)) * options->distance;
         }
         rest -= length;
     }

@@ -1,7 +1,7 @@
 /* Random numbers of our own: the same for a seed on every machine (SplitMix64: Steele, Lea, Flood
  * 2014). */
-#ifndef ISO_LATTICE_RANDOM_H
-#define ISO_LATTICE_RANDOM_H
+#ifndef ISO_BASE_RANDOM_H
+#define ISO_BASE_RANDOM_H
 
 #include <stdint.h>
 
