@@ -190,7 +190,8 @@ static iso_status outline_task(void *payload, int64_t number, int worker) {
     iso_layer *layer = window_layer(&stack->window, index);
     settings_of_layer(&layer->settings, stack->options, index, stack->levels.height[index]);
     layer->settings.sparse.z = iso_units(stack->levels.cut[index]);
-    if (stack->levels.top[index] - stack->levels.height[index] >= stack->options->lattice_skin)
+    if (iso_units(stack->levels.top[index] - stack->levels.height[index]) >=
+        iso_units(stack->options->lattice_skin)) /* in doubles 0.46 - 0.12 is less than 0.34 */
         layer->settings.drains.count = 0;
     if (stack->combination) {
         const iso_combination *of = &stack->combination[index];

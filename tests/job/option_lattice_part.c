@@ -24,12 +24,12 @@ static double opening(const print *p, int32_t layer) {
     return least;
 }
 
-/* Holes of this radius through what is printed below 1 mm, and nowhere else. */
-static void check_holes(const print *p, double radius) {
+/* Holes of this radius through what is printed below the skin's height, and nowhere else. */
+static void check_holes(const print *p, double radius, double skin) {
     for (int32_t i = 0; i < p->level_count; i++) {
         double bottom = i > 0 ? p->level[i - 1].z : 0, open = opening(p, i);
-        if (bottom < 1 - 1e-6)
-            CHECK_NEAR(radius + 0.25, open, 0.15); /* half a bead, and of the first layer more */
+        if (bottom < skin - 1e-6)
+            CHECK_NEAR(radius + 0.25, open, 0.2); /* half a bead, more or less by the first layer */
         else
             CHECK(open < 1.2);
     }
@@ -37,12 +37,18 @@ static void check_holes(const print *p, double radius) {
 
 static void drilled(const change *c) {
     CHECK(opening(c->a, 0) < 1.2);
-    check_holes(c->b, 1.5);
+    check_holes(c->b, 1.5, 1);
+}
+
+/* The fourth layer begins where the skin ends. */
+static void drilled_to_the_layer(const change *c) {
+    CHECK(opening(c->a, 0) < 1.2);
+    check_holes(c->b, 1.5, 0.34);
 }
 
 static void wider(const change *c) {
-    check_holes(c->a, 1.5);
-    check_holes(c->b, 3);
+    check_holes(c->a, 1.5, 1);
+    check_holes(c->b, 3, 1);
 }
 
 static void the_same(const change *c) {
@@ -57,6 +63,10 @@ const option_row option_rows_lattice_part[] = {
     {make_block, "lattice_drain_diameter", "6", SKINNED "lattice_drain = 0,0\n", wider},
     {make_block, "lattice_skin", "1",
      STEADY "skirts = 0\nperimeters = 2\nfill_density = 60%\nlattice_drain = 0,0\n", drilled},
+    {make_block, "lattice_skin", "0.34",
+     STEADY "skirts = 0\nperimeters = 2\nfill_density = 60%\nlattice_drain = 0,0\n"
+            "first_layer_height = 0.1\nlayer_height = 0.12\n",
+     drilled_to_the_layer},
     {make_block, "lattice_open", "1", SKINNED, the_same},
     {0},
 };
