@@ -114,7 +114,7 @@ static void clip(polygon *p, const neighbour *m, int32_t by) {
     for (int32_t i = 0; i < p->count; i++) {
         int32_t next = i + 1 < p->count ? i + 1 : 0;
         int in = height[i] <= 0, goes = in != (height[next] <= 0);
-        if (in) {
+        if (in && kept.count < CORNERS_MAX) {
             memcpy(kept.corner[kept.count], p->corner[i], sizeof *kept.corner);
             kept.side[kept.count++] = p->side[i];
         }
