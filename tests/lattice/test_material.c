@@ -355,7 +355,7 @@ static void test_layers(void) {
     static const int32_t pattern[] = {ISO_LATTICE_GYROID_SHEET, ISO_LATTICE_OCTET_STRUTS,
                                       ISO_LATTICE_PRIMITIVE_SOLID, ISO_LATTICE_FOAM_SHEET};
     iso_region region = {0};
-    add_square(&region, 14);
+    add_square(&region, 8);
     for (int k = 0; k < 4; k++) {
         iso_lattice_options options = iso_lattice_defaults();
         iso_lattice *one = NULL, *two = NULL;
@@ -368,7 +368,7 @@ static void test_layers(void) {
         options.material = "40";
         CHECK_OK(lattice_new(&two, &options, &box, 1));
         fill.link_max = 5 * MM;
-        for (double z = 0.6; z < 19; z += 2.3) {
+        for (double z = 0.6; z < 19; z += 2.9) {
             iso_paths plain = {0}, coloured = {0};
             iso_lattice_slice slice = {.lattice = one, .z = z};
             CHECK_OK(lattice_fill(&plain, &region, &slice, &fill, &arena, planar));

@@ -196,6 +196,29 @@ static void test_tools(void) {
     fio_virtual_printer_free(printer);
 }
 
+/* What is drawn back stays so while another tool prints. */
+static void test_tools_keep_their_filament(void) {
+    static const char *const back[] = {"G1 E-2 F2400\n", "G10\n"}, *const forth[] = {"G1 E2\n",
+                                                                                     "G11\n"};
+    for (int k = 0; k < 2; k++) {
+        fio_virtual_options options = fio_virtual_options_defaults();
+        char text[512];
+        options.tools = 2;
+        fio_virtual_printer *printer = rig_make(&options, NULL);
+        snprintf(text, sizeof text,
+                 "M302 P1\nG28\nM83\nG1 Z1 F600\nG1 X10 Y10 E1 F1200\n%sT1\nG1 X20 E1\n%sT0\n%s"
+                 "G1 X30 E1\nT1\n",
+                 back[k], back[k], forth[k]);
+        rig_run(printer, text);
+        CHECK_EQUAL(0, rig_statistics(printer)->count[FIO_WARNING_RETRACTED]);
+        CHECK_EQUAL(0, rig_statistics(printer)->count[FIO_WARNING_OVERPRIMED]);
+        CHECK(rig_statistics(printer)->retracted > 0.5);
+        rig_run(printer, "G1 X40 E1");
+        CHECK_EQUAL(1, rig_statistics(printer)->count[FIO_WARNING_RETRACTED]);
+        fio_virtual_printer_free(printer);
+    }
+}
+
 static void test_options_are_checked(void) {
     fio_virtual_printer *printer;
     for (int i = 0; i < 8; i++) {
@@ -227,6 +250,7 @@ int main(void) {
     RUN(test_firmware_retraction);
     RUN(test_layers);
     RUN(test_tools);
+    RUN(test_tools_keep_their_filament);
     RUN(test_options_are_checked);
     return check_verdict();
 }
