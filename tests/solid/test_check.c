@@ -206,6 +206,87 @@ static void test_auto_warns_of_wrong_contours(void) {
     shape_free(&s);
 }
 
+/* One contour of the plate runs the wrong way. Every third level is looked at, and the last. */
+static void test_auto_finds_one_wrong_contour(void) {
+    shape s = {0};
+    cut c;
+    for (int i = 0; i < 9; i++)
+        shape_sphere(&s, (shape_point){9 * (i % 3), 9 * (i / 3.0), 4}, 4, 8, 16);
+    if (slice(&c, &s, 0.5) && CHECK_EQUAL(16, c.levels.count))
+        for (int32_t level = 0; level < c.levels.count; level++)
+            for (int32_t k = c.slices.level_first[level]; k < c.slices.level_first[level + 1];
+                 k += 4) {
+                int64_t wrong = c.report.solid.contours_wrong;
+                turn_contour(&c.slices, k);
+                CHECK_OK(look(&c, ISO_CHECK_AUTO, NULL));
+                CHECK_EQUAL(level % 3 == 1 || level == 15, c.report.solid.contours_wrong > wrong);
+                turn_contour(&c.slices, k);
+            }
+    cut_free(&c);
+    shape_free(&s);
+}
+
+static iso_report_solid check_some(const shape *s, double step) {
+    cut c;
+    iso_report_solid found = {0};
+    if (slice(&c, s, step) && CHECK_OK(look(&c, ISO_CHECK_AUTO, NULL)))
+        found = c.report.solid;
+    CHECK_EQUAL(0, found.contours_wrong);
+    CHECK_EQUAL(0, c.report.warning_count);
+    cut_free(&c);
+    return found;
+}
+
+/* As with all their triangles in full mode. */
+static void test_auto_sorts_shells(void) {
+    shape s = {0};
+    shape_box(&s, 0, 0, 0, 10, 10, 10);
+    shape_box(&s, 3, 3, 3, 7, 7, 7);
+    iso_report_solid found = check_some(&s, 0.5);
+    CHECK_EQUAL(1, found.shells_nested);
+    CHECK_EQUAL(3, found.contours_buried); /* levels 7, 10 and 13 */
+    CHECK_EQUAL(0, found.shells_overlapping + found.shells_hollow + found.cavities);
+    shape_turn(&s, 12, 24);
+    found = check_some(&s, 0.5);
+    CHECK_EQUAL(1, found.cavities);
+    CHECK_EQUAL(0, found.shells_overlapping + found.shells_hollow + found.shells_nested);
+    shape_turn(&s, 12, 24);
+    shape_box(&s, 20, 0, 0, 30, 10, 10);
+    shape_sphere(&s, (shape_point){30, 5, 5}, 4.9, 12, 24);
+    found = check_some(&s, 0.5);
+    CHECK_EQUAL(4, found.shells);
+    CHECK_EQUAL(1, found.shells_nested);
+    CHECK_EQUAL(2, found.shells_overlapping);
+    shape_free(&s);
+}
+
+/* A shell that is inside out, and its contours with it, bounds no material. */
+static void test_hollow_shells(void) {
+    shape s = {0};
+    cut c;
+    shape_box(&s, 0, 0, 0, 10, 10, 10);
+    shape_box(&s, 20, 0, 0, 30, 10, 10);
+    if (slice(&c, &s, 0.5)) {
+        iso_mesh *mesh = &c.mesh;
+        for (int32_t t = 12; t < 24; t++) {
+            int32_t kept = mesh->origin[3 * t + 1];
+            mesh->origin[3 * t + 1] = mesh->origin[3 * t + 2];
+            mesh->origin[3 * t + 2] = kept;
+        }
+        for (int32_t i = 0; i < c.slices.contour_count; i++)
+            if (c.slices.point[c.slices.contour_first[i]].x > 15)
+                turn_contour(&c.slices, i);
+        CHECK_OK(look(&c, ISO_CHECK_AUTO, NULL));
+        CHECK_EQUAL(1, c.report.solid.shells_hollow);
+        CHECK_EQUAL(0, c.report.solid.contours_wrong);
+        CHECK_EQUAL(c.report.solid.contours_checked, 2 * c.report.solid.contours_empty);
+        CHECK_OK(look(&c, ISO_CHECK_FULL, NULL));
+        CHECK_EQUAL(2, c.report.solid.shells_hollow);
+    }
+    cut_free(&c);
+    shape_free(&s);
+}
+
 /* A plate of many parts, some in others: the same with any number of threads. */
 static void test_threads(void) {
     shape s = {0};
@@ -269,6 +350,14 @@ static void test_no_memory(void) {
             CHECK(status == ISO_OK || status == ISO_NO_MEMORY);
         }
         CHECK(n > 10);
+        status = ISO_NO_MEMORY;
+        for (n = 0; status != ISO_OK; n++) {
+            iso_fail_allocation_after(n);
+            status = look(&c, ISO_CHECK_AUTO, NULL);
+            iso_fail_allocation_after(-1);
+            CHECK(status == ISO_OK || status == ISO_NO_MEMORY);
+        }
+        CHECK(n > 10);
     }
     cut_free(&c);
     shape_free(&s);
@@ -288,11 +377,9 @@ static int without_module(void) {
     shape_box(&s, 0, 0, 0, 10, 10, 10);
     shape_box(&s, 5, 5, 2, 15, 15, 12);
     if (slice(&c, &s, 1)) {
-        for (int i = 0; i < 2; i++)
-            CHECK_OK(look(&c, ISO_CHECK_AUTO, NULL));
-        CHECK_EQUAL(0, c.report.solid.points);
-        if (CHECK_EQUAL(1, c.report.warning_count))
-            CHECK(strcmp(c.report.warning[0].code, "solid-unchecked") == 0);
+        CHECK_OK(look(&c, ISO_CHECK_AUTO, NULL));
+        CHECK_EQUAL(2, c.report.solid.shells_overlapping);
+        CHECK_EQUAL(0, c.report.warning_count);
         CHECK_STATUS(ISO_BAD_CONFIG, look(&c, ISO_CHECK_FULL, NULL));
     }
     cut_free(&c);
@@ -312,6 +399,9 @@ int main(int count, char **argument) {
     RUN(test_auto_passes_plain_meshes_by);
     RUN(test_every_wrong_contour_is_found);
     RUN(test_auto_warns_of_wrong_contours);
+    RUN(test_auto_finds_one_wrong_contour);
+    RUN(test_auto_sorts_shells);
+    RUN(test_hollow_shells);
     RUN(test_threads);
     RUN(test_random_soup_of_boxes);
     RUN(test_no_memory);

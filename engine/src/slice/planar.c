@@ -8,6 +8,7 @@
 #include <isoslice/slice.h>
 
 #include "base/memory.h"
+#include "slice/search.h"
 
 typedef struct slicer {
     const iso_mesh *mesh;
@@ -20,25 +21,10 @@ typedef struct slicer {
     int64_t contour_capacity;
 } slicer;
 
-/* Guess by proportion, then step: right for levels of any spacing, quick for even ones. */
-static int32_t first_level(const iso_levels *levels, double scale, double z) {
-    const double *cut = levels->cut;
-    int32_t count = levels->count;
-    double guess = (z - cut[0]) * scale;
-    int32_t i = guess <= 0 ? 0 : guess >= count ? count : (int32_t)guess;
-    while (i > 0 && cut[i - 1] >= z)
-        i--;
-    while (i < count && cut[i] < z)
-        i++;
-    return i;
-}
-
 static void find_levels(slicer *s) {
-    const iso_levels *levels = s->levels;
-    double span = levels->cut[levels->count - 1] - levels->cut[0];
-    double scale = span > 0 ? (levels->count - 1) / span : 0;
+    double scale = levels_scale(s->levels);
     for (int32_t v = 0; v < s->mesh->vertex_count; v++)
-        s->lb[v] = first_level(levels, scale, s->mesh->position[v].z);
+        s->lb[v] = levels_first_at(s->levels, scale, s->mesh->position[v].z);
 }
 
 static void count_crossings(slicer *s) {

@@ -3,15 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-#include <isoslice/solid.h>
-
 #include "base/memory.h"
 #include "base/sort.h"
 #include "solid/check_shells.h"
+#include "solid/planes.h"
 
-/* One contour in so many is looked at in auto mode, and of small ones fewer: a point costs about as
- * much as the rest of the job does for this many crossings. */
-enum { AUTO_SHARE = 4, AUTO_CROSSINGS = 100 };
+/* In auto mode one level in so many is looked at, from the second on: a level costs about a sixth
+ * of what a print of nothing but one wall takes for it. By counts alone, never by the clock. */
+enum { AUTO_LEVELS = 3 };
 
 /* Another place of the contour, further from it, or a little above or below: a sheet next to it or
  * a face in the level is no defect. In mm; a nanometre is about what solid.h rounds a metre to. */
@@ -28,30 +27,37 @@ typedef struct sample {
 } sample;
 
 typedef struct findings {
-    int64_t contours, checked, buried, empty, wrong, points;
+    int64_t contours; /* of all levels */
+    int64_t checked, buried, empty, wrong, points;
     iso_vec3 where; /* of the first wrong one */
     int32_t claimed, found;
 } findings;
 
-/* A contour of a model's slices. */
+/* A contour of a model's slices, and what was found wrong with it at first. */
 typedef struct place {
     int32_t model, contour;
+    iso_vec2 beside[2]; /* left and right, where it is looked at this time */
+    int32_t claimed, found;
+    iso_vec3 where;
 } place;
 
-typedef struct desk { /* of one thread; for the level with most contours */
-    sample *sample;   /* [2 contours] */
-    iso_vec3 *point;  /* [2 contours] */
-    int32_t *winding; /* [2 contours] */
-    int32_t *claim;   /* [2 contours] */
-    place *place;     /* [contours] */
+typedef struct desk {     /* of one thread; for the level with most contours and places */
+    sample *sample;       /* [2 contours] */
+    iso_vec3 *point;      /* [2 (contours + places)] */
+    int32_t *winding;     /* [2 (contours + places)] */
+    int32_t *claim;       /* [2 contours] */
+    place *place;         /* [contours] */
+    plane_point *scratch; /* [2 (contours + places)] */
 } desk;
 
 typedef struct checker {
     const solid_subject *subject;
-    const iso_solid *solid;
-    desk *desk;         /* [threads] */
-    findings *findings; /* [levels] */
-    int64_t share;      /* one contour in so many */
+    int32_t share;     /* one level in so many is looked at */
+    iso_levels levels; /* their cuts alone */
+    solid_planes planes;
+    shell_places shells; /* none in full mode */
+    desk *desk;          /* [threads] */
+    findings *findings;  /* [levels] */
 } checker;
 
 /* ---- what the contours say ---- */
@@ -133,101 +139,6 @@ static bool look_beside(iso_vec2 beside[2], const iso_slices *slices, int32_t co
     return beside[0].x != beside[1].x || beside[0].y != beside[1].y;
 }
 
-static int32_t choose(desk *d, const checker *c, int32_t level, findings *found) {
-    int32_t chosen = 0;
-    for (int32_t m = 0; m < c->subject->count; m++) {
-        const iso_slices *s = &c->subject->slices[m];
-        found->contours += s->level_first[level + 1] - s->level_first[level];
-        for (int32_t k = s->level_first[level]; k < s->level_first[level + 1]; k++) {
-            iso_vec2 beside[2];
-            if ((k + (int64_t)level) % c->share != 0 || !look_beside(beside, s, k, 0))
-                continue;
-            for (int32_t side = 0; side < 2; side++)
-                d->sample[2 * chosen + side] =
-                    (sample){.at = beside[side], .contour = 2 * chosen + side};
-            d->place[chosen++] = (place){m, k};
-        }
-    }
-    return chosen;
-}
-
-/* ---- the comparison ---- */
-
-/* Ask again about one contour whose first answer was wrong; true if another one is right. `winding`
- * left and right is then that. */
-static iso_status look_again(bool *right, int32_t winding[2], findings *found, const checker *c,
-                             int32_t level, place at) {
-    double z = c->subject->levels->cut[level];
-    *right = false;
-    for (int32_t turn = 1; turn < ATTEMPTS && !*right; turn++) {
-        iso_vec2 beside[2];
-        if (!look_beside(beside, &c->subject->slices[at.model], at.contour, turn))
-            continue;
-        sample list[2] = {{.at = beside[0], .contour = 0}, {.at = beside[1], .contour = 1}};
-        iso_vec3 point[2];
-        sort_samples(list, 2);
-        wind(list, 2, c->subject, level);
-        for (int i = 0; i < 2; i++)
-            point[i] = (iso_vec3){beside[i].x, beside[i].y, z + attempts[turn].up};
-        ISO_TRY(iso_solid_winding(winding, NULL, c->solid, point, 2, NULL));
-        found->points += 2;
-        *right = list[0].winding == winding[list[0].contour] &&
-                 list[1].winding == winding[list[1].contour];
-    }
-    return ISO_OK;
-}
-
-static void judge(findings *found, int32_t left, int32_t right) {
-    found->buried += left >= 1 && right >= 1;
-    found->empty += left <= 0 && right <= 0;
-}
-
-static iso_status compare(findings *found, const checker *c, const desk *d, int32_t level,
-                          int32_t i) {
-    const int32_t *winding = d->winding + 2 * i, *claim = d->claim + 2 * i;
-    found->checked++;
-    if (winding[0] == claim[0] && winding[1] == claim[1]) {
-        judge(found, winding[0], winding[1]);
-        return ISO_OK;
-    }
-    bool right;
-    int32_t other[2];
-    ISO_TRY(look_again(&right, other, found, c, level, d->place[i]));
-    if (right) {
-        judge(found, other[0], other[1]);
-        return ISO_OK;
-    }
-    if (found->wrong++ == 0) {
-        int side = winding[0] == claim[0];
-        found->where = d->point[2 * i + side];
-        found->claimed = claim[side];
-        found->found = winding[side];
-    }
-    return ISO_OK;
-}
-
-static iso_status check_level(void *payload, int64_t number, int worker) {
-    const checker *c = payload;
-    int32_t level = (int32_t)number;
-    desk *d = &c->desk[worker];
-    findings *found = &c->findings[level];
-    int32_t chosen = choose(d, c, level, found);
-    for (int32_t i = 0; i < 2 * chosen; i++)
-        d->point[i] =
-            (iso_vec3){d->sample[i].at.x, d->sample[i].at.y, c->subject->levels->cut[level]};
-    ISO_TRY(iso_solid_winding(d->winding, NULL, c->solid, d->point, 2 * chosen, NULL));
-    found->points += 2 * chosen;
-    sort_samples(d->sample, 2 * chosen);
-    wind(d->sample, 2 * chosen, c->subject, level);
-    for (int32_t i = 0; i < 2 * chosen; i++)
-        d->claim[d->sample[i].contour] = d->sample[i].winding;
-    for (int32_t i = 0; i < chosen; i++)
-        ISO_TRY(compare(found, c, d, level, i));
-    return ISO_OK;
-}
-
-/* ---- all levels ---- */
-
 static int64_t contours_of(const solid_subject *subject, int32_t level) {
     int64_t sum = 0;
     for (int32_t m = 0; m < subject->count; m++)
@@ -235,46 +146,133 @@ static int64_t contours_of(const solid_subject *subject, int32_t level) {
     return sum;
 }
 
-/* By counts alone, never by the clock. */
-static int64_t share_of(const solid_subject *subject) {
-    int64_t contours = 0, crossings = 0;
-    if (subject->mode == ISO_CHECK_FULL)
-        return 1;
+static int32_t list_contours(desk *d, const solid_subject *subject, int32_t level) {
+    int32_t listed = 0;
     for (int32_t m = 0; m < subject->count; m++) {
-        contours += subject->slices[m].contour_count;
-        crossings += subject->slices[m].crossing_count;
+        const iso_slices *s = &subject->slices[m];
+        for (int32_t k = s->level_first[level]; k < s->level_first[level + 1]; k++) {
+            d->place[listed] = (place){.model = m, .contour = k};
+            listed += look_beside(d->place[listed].beside, s, k, 0);
+        }
     }
-    int64_t affordable = crossings / AUTO_CROSSINGS + 1, share = contours / affordable + 1;
-    return share > AUTO_SHARE ? share : AUTO_SHARE;
+    return listed;
 }
 
-static iso_status furnish(desk *d, int64_t contours) {
+/* A contour that had two sides the first time has them further from it, too. */
+static void look_elsewhere(desk *d, const solid_subject *subject, int32_t turn, int32_t count) {
+    for (place *at = d->place; at < d->place + count; at++)
+        (void)look_beside(at->beside, &subject->slices[at->model], at->contour, turn);
+}
+
+/* ---- the comparison ---- */
+
+/* Points to both sides of the first `count` places, and what the contours say of them. */
+static void claim(desk *d, const checker *c, int32_t level, int32_t turn, int32_t count) {
+    double z = c->subject->levels->cut[level] + attempts[turn].up;
+    for (int32_t i = 0; i < 2 * count; i++) {
+        iso_vec2 at = d->place[i / 2].beside[i % 2];
+        d->sample[i] = (sample){.at = at, .contour = i};
+        d->point[i] = (iso_vec3){at.x, at.y, z};
+    }
+    sort_samples(d->sample, 2 * count);
+    wind(d->sample, 2 * count, c->subject, level);
+    for (int32_t i = 0; i < 2 * count; i++)
+        d->claim[d->sample[i].contour] = d->sample[i].winding;
+}
+
+static void judge(findings *found, int32_t left, int32_t right) {
+    found->buried += left >= 1 && right >= 1;
+    found->empty += left <= 0 && right <= 0;
+}
+
+/* Of the first `count` places those stay whose numbers differ. */
+static int32_t compare(findings *found, desk *d, int32_t turn, int32_t count) {
+    int32_t kept = 0;
+    for (int32_t i = 0; i < count; i++) {
+        const int32_t *winding = d->winding + 2 * i, *said = d->claim + 2 * i;
+        if (winding[0] == said[0] && winding[1] == said[1]) {
+            judge(found, winding[0], winding[1]);
+            continue;
+        }
+        place at = d->place[i];
+        if (turn == 0) {
+            int side = winding[0] == said[0];
+            at.where = d->point[2 * i + side];
+            at.claimed = said[side];
+            at.found = winding[side];
+        }
+        d->place[kept++] = at;
+    }
+    return kept;
+}
+
+static int32_t level_of(const checker *c, int32_t look) {
+    int32_t level = look * c->share + c->share / 2, last = c->subject->levels->count - 1;
+    return level < last ? level : last;
+}
+
+static iso_status check_level(void *payload, int64_t number, int worker) {
+    checker *c = payload;
+    int32_t look = (int32_t)number, level = level_of(c, look);
+    desk *d = &c->desk[worker];
+    findings *found = &c->findings[look];
+    int32_t count = list_contours(d, c->subject, level);
+    found->checked = count;
+    for (int32_t turn = 0; turn < ATTEMPTS && (turn == 0 || count > 0); turn++) {
+        int32_t places = turn > 0 ? 0 : (int32_t)shell_places_of(&c->shells, look);
+        if (turn > 0)
+            look_elsewhere(d, c->subject, turn, count);
+        claim(d, c, level, turn, count);
+        if (places > 0)
+            shell_places_points(d->point + 2 * count, &c->shells, look, c->levels.cut[look]);
+        planes_winding(d->winding, &c->planes, look, d->point, 2 * (count + places), d->scratch);
+        if (places > 0)
+            shell_places_note(&c->shells, d->winding + 2 * count, look);
+        found->points += 2 * (count + places);
+        count = compare(found, d, turn, count);
+    }
+    found->wrong = count;
+    if (count > 0) {
+        found->where = d->place[0].where;
+        found->claimed = d->place[0].claimed;
+        found->found = d->place[0].found;
+    }
+    return ISO_OK;
+}
+
+/* ---- all levels ---- */
+
+static iso_status furnish(desk *d, int64_t contours, int64_t points) {
     ISO_TRY(ISO_ALLOCATE(d->sample, 2 * contours));
-    ISO_TRY(ISO_ALLOCATE(d->point, 2 * contours));
-    ISO_TRY(ISO_ALLOCATE(d->winding, 2 * contours));
     ISO_TRY(ISO_ALLOCATE(d->claim, 2 * contours));
-    return ISO_ALLOCATE(d->place, contours);
+    ISO_TRY(ISO_ALLOCATE(d->place, contours));
+    ISO_TRY(ISO_ALLOCATE(d->point, points));
+    ISO_TRY(ISO_ALLOCATE(d->winding, points));
+    return ISO_ALLOCATE(d->scratch, points);
 }
 
 static iso_status check_levels(findings *sum, checker *c, iso_pool *pool) {
-    int32_t levels = c->subject->levels->count, threads = pool ? iso_pool_threads(pool) : 1;
-    int64_t most = 0;
-    for (int32_t i = 0; i < levels; i++) {
-        int64_t contours = contours_of(c->subject, i);
+    int32_t looks = c->levels.count, threads = pool ? iso_pool_threads(pool) : 1;
+    int64_t most = 0, most_points = 0;
+    for (int32_t i = 0; i < c->subject->levels->count; i++)
+        sum->contours += contours_of(c->subject, i);
+    for (int32_t i = 0; i < looks; i++) {
+        int64_t contours = contours_of(c->subject, level_of(c, i));
+        int64_t points = 2 * (contours + shell_places_of(&c->shells, i));
         most = contours > most ? contours : most;
+        most_points = points > most_points ? points : most_points;
     }
-    ISO_TRY(ISO_ALLOCATE(c->findings, levels));
-    memset(c->findings, 0, (size_t)levels * sizeof *c->findings);
+    ISO_TRY(ISO_ALLOCATE(c->findings, looks));
+    memset(c->findings, 0, (size_t)looks * sizeof *c->findings);
     ISO_TRY(ISO_ALLOCATE(c->desk, threads));
     memset(c->desk, 0, (size_t)threads * sizeof *c->desk);
     for (int32_t i = 0; i < threads; i++)
-        ISO_TRY(furnish(&c->desk[i], most));
-    ISO_TRY(iso_parallel_for(pool, levels, check_level, c));
-    for (int32_t i = 0; i < levels; i++) {
+        ISO_TRY(furnish(&c->desk[i], most, most_points));
+    ISO_TRY(iso_parallel_for(pool, looks, check_level, c));
+    for (int32_t i = 0; i < looks; i++) {
         const findings *f = &c->findings[i];
         if (sum->wrong == 0)
             sum->where = f->where, sum->claimed = f->claimed, sum->found = f->found;
-        sum->contours += f->contours;
         sum->checked += f->checked;
         sum->buried += f->buried;
         sum->empty += f->empty;
@@ -291,9 +289,22 @@ static void checker_free(checker *c, int32_t threads) {
         iso_release(c->desk[i].winding);
         iso_release(c->desk[i].claim);
         iso_release(c->desk[i].place);
+        iso_release(c->desk[i].scratch);
     }
     iso_release(c->desk);
     iso_release(c->findings);
+    shell_places_free(&c->shells);
+    planes_free(&c->planes);
+    iso_levels_free(&c->levels);
+}
+
+static iso_status choose_levels(checker *c) {
+    int32_t levels = c->subject->levels->count;
+    c->levels.count = (levels + c->share - 1) / c->share;
+    ISO_TRY(ISO_ALLOCATE(c->levels.cut, c->levels.count));
+    for (int32_t i = 0; i < c->levels.count; i++)
+        c->levels.cut[i] = c->subject->levels->cut[level_of(c, i)];
+    return ISO_OK;
 }
 
 /* ---- the report ---- */
@@ -327,27 +338,22 @@ static iso_status verdict(iso_report *report, const solid_subject *subject, cons
                            found->where.y, found->claimed, found->found);
 }
 
-static iso_status check_with(iso_report *report, const solid_subject *subject,
-                             const iso_solid *solid, iso_pool *pool) {
-    checker c = {.subject = subject, .solid = solid, .share = share_of(subject)};
-    findings found = {0};
-    shell_kinds kinds = {0};
-    iso_status status = check_levels(&found, &c, pool);
-    checker_free(&c, pool ? iso_pool_threads(pool) : 1);
+/* Contours, and in auto mode shells with them. */
+static iso_status check_sections(findings *found, shell_kinds *kinds, const solid_subject *subject,
+                                 iso_pool *pool) {
+    bool sampled = subject->mode == ISO_CHECK_AUTO;
+    checker c = {.subject = subject, .share = sampled ? AUTO_LEVELS : 1};
+    iso_status status = choose_levels(&c);
     if (status == ISO_OK)
-        status = shells_sort_by_kind(&kinds, subject, solid, pool);
-    if (status != ISO_OK)
-        return status;
-    add_findings(&report->solid, &found, &kinds);
-    return verdict(report, subject, &found);
-}
-
-static iso_status warn_unchecked(iso_report *report) {
-    for (int32_t i = 0; i < report->warning_count; i++)
-        if (strcmp(report->warning[i].code, "solid-unchecked") == 0)
-            return ISO_OK;
-    return iso_report_warn(report, "solid-unchecked",
-                           "whether slices are right was not checked: %s", iso_error_message());
+        status = planes_make(&c.planes, subject->mesh, subject->count, &c.levels);
+    if (status == ISO_OK && sampled)
+        status = shell_places_choose(&c.shells, &c.planes);
+    if (status == ISO_OK)
+        status = check_levels(found, &c, pool);
+    if (status == ISO_OK && sampled)
+        status = shell_places_sort(kinds, &c.shells);
+    checker_free(&c, pool ? iso_pool_threads(pool) : 1);
+    return status;
 }
 
 static bool boxes_meet(const iso_mesh *a, const iso_mesh *b) {
@@ -375,15 +381,13 @@ bool solid_check_is_due(const iso_mesh *mesh, int32_t count, iso_check_solid mod
 }
 
 iso_status solid_check(iso_report *report, const solid_subject *subject, iso_pool *pool) {
+    findings found = {0};
+    shell_kinds kinds = {0};
     if (!solid_check_is_due(subject->mesh, subject->count, subject->mode))
         return ISO_OK;
-    iso_solid *solid;
-    iso_status status = iso_solid_new(&solid, subject->mesh, subject->count);
-    if (status == ISO_BAD_CONFIG && subject->mode == ISO_CHECK_AUTO)
-        return warn_unchecked(report);
-    if (status != ISO_OK)
-        return status;
-    status = check_with(report, subject, solid, pool);
-    iso_solid_free(solid);
-    return status;
+    ISO_TRY(check_sections(&found, &kinds, subject, pool));
+    if (subject->mode == ISO_CHECK_FULL)
+        ISO_TRY(shells_ask_rays(&kinds, subject, pool));
+    add_findings(&report->solid, &found, &kinds);
+    return verdict(report, subject, &found);
 }

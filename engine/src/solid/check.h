@@ -31,8 +31,9 @@ typedef struct solid_subject {
 bool solid_check_is_due(const iso_mesh *mesh, int32_t count, iso_check_solid mode);
 
 /* Adds to report->solid. In full, every contour and triangle is looked at, and a wrong contour is
- * ISO_NOT_VERIFIED. In auto, so many that it takes a small share of the job's time; wrong contours
- * give the warning "contours-wrong", a missing module "solid-unchecked", once. */
+ * ISO_NOT_VERIFIED; ISO_BAD_CONFIG: the module isoslice-solid is missing. In auto, every third
+ * level and some triangles of each shell that it meets, which needs no module; wrong contours give
+ * the warning "contours-wrong". */
 iso_status solid_check(iso_report *report, const solid_subject *subject,
                        iso_pool *pool) ISO_MUST_CHECK;
 

@@ -1,9 +1,8 @@
 #include <isoslice/solid.h>
 
-#include <math.h>
-
 #include "base/memory.h"
 #include "base/random.h"
+#include "solid/grid.h"
 #include "solid/inside.h"
 #include "solid/tree.h"
 
@@ -20,68 +19,17 @@ enum { CHUNK = 128, FOUND_USUAL = 4096 };
 struct iso_solid {
     const solid_table *table;
     solid_tree *tree; /* NULL if there are no triangles */
-    double scale;     /* steps per mm, a power of two */
-    int64_t middle[3];
-    int32_t min[3], max[3]; /* of the corners; steps from the middle, as all int32_t here */
+    solid_grid grid;
     int32_t count;
     int32_t
         *corner; /* [9 count]: a triangle is read whole or not at all, so it lies in one place */
 };
 
-/* To nearest, halves away from zero; |mm * scale| <= 2^51 keeps all of it exact. */
-static int64_t steps(double mm, double scale) {
-    double s = mm * scale;
-    return (int64_t)(s < 0 ? s - 0.5 : s + 0.5);
-}
-
-static double axis_of(const iso_vec3 *v, int axis) {
-    return axis == 0 ? v->x : axis == 1 ? v->y : v->z;
-}
-
-/* The finest grid whose steps across the box are still good for the predicates. Only a box that is
- * 2^20 times its size away from zero gets a coarser one. */
-static void choose_grid(iso_solid *solid, const iso_mesh *mesh, int32_t count) {
-    double low[3] = {0}, high[3] = {0}, span = 0, far = 0;
-    int first = 1;
-    for (int32_t m = 0; m < count; m++) {
-        if (mesh[m].triangle_count == 0)
-            continue;
-        for (int k = 0; k < 3; k++) {
-            double least = axis_of(&mesh[m].min, k), most = axis_of(&mesh[m].max, k);
-            low[k] = first || least < low[k] ? least : low[k];
-            high[k] = first || most > high[k] ? most : high[k];
-        }
-        first = 0;
-    }
-    for (int k = 0; k < 3; k++) {
-        span = fmax(span, high[k] - low[k]);
-        far = fmax(far, fmax(fabs(low[k]), fabs(high[k])));
-    }
-    double scale = 0x1p60;
-    while (span * scale > (double)INSIDE_SPAN_MAX - 4 || far * scale > 0x1p50)
-        scale /= 2;
-    solid->scale = scale;
-    for (int k = 0; k < 3; k++)
-        solid->middle[k] = steps(low[k] / 2 + high[k] / 2, scale);
-}
-
 static void copy_corners(iso_solid *solid, const iso_mesh *mesh, int32_t count) {
     int32_t *to = solid->corner;
-    for (int k = 0; k < 3; k++) {
-        solid->min[k] = INT32_MAX;
-        solid->max[k] = INT32_MIN;
-    }
-    for (int32_t m = 0; m < count; m++) {
-        for (int64_t dart = 0; dart < 3 * (int64_t)mesh[m].triangle_count; dart++) {
-            const iso_vec3 *from = &mesh[m].position[mesh[m].origin[dart]];
-            for (int k = 0; k < 3; k++) {
-                int32_t c = (int32_t)(steps(axis_of(from, k), solid->scale) - solid->middle[k]);
-                *to++ = c;
-                solid->min[k] = c < solid->min[k] ? c : solid->min[k];
-                solid->max[k] = c > solid->max[k] ? c : solid->max[k];
-            }
-        }
-    }
+    for (int32_t m = 0; m < count; m++)
+        for (int64_t dart = 0; dart < 3 * (int64_t)mesh[m].triangle_count; dart++, to += 3)
+            grid_round(to, &solid->grid, &mesh[m].position[mesh[m].origin[dart]]);
 }
 
 static void make_boxes(float *box, const int32_t *corner, int32_t count) {
@@ -106,7 +54,7 @@ static iso_status tree_failed(iso_status status) {
 }
 
 static iso_status build(iso_solid *solid, const iso_mesh *mesh, int32_t count) {
-    choose_grid(solid, mesh, count);
+    grid_choose(&solid->grid, mesh, count);
     ISO_TRY(ISO_ALLOCATE(solid->corner, 9 * (int64_t)solid->count));
     copy_corners(solid, mesh, count);
     if (solid->count == 0)
@@ -123,14 +71,11 @@ iso_status iso_solid_new(iso_solid **solid, const iso_mesh *mesh, int32_t count)
     *solid = NULL;
     const void *table;
     ISO_TRY(module_open(&table, ISO_MODULE_SOLID));
-    int64_t triangles = 0;
-    for (int32_t m = 0; m < count; m++)
-        triangles += mesh[m].triangle_count;
-    if (triangles > INT32_MAX)
-        return iso_fail(ISO_UNSLICEABLE, "more than %d triangles in one object", INT32_MAX);
+    int32_t triangles;
+    ISO_TRY(grid_count(&triangles, mesh, count));
     iso_solid *made;
     ISO_TRY(ISO_ALLOCATE(made, 1));
-    *made = (iso_solid){.table = table, .count = (int32_t)triangles};
+    *made = (iso_solid){.table = table, .count = triangles};
     iso_status status = build(made, mesh, count);
     if (status != ISO_OK) {
         iso_solid_free(made);
@@ -162,25 +107,11 @@ typedef struct point_chunk {
     int32_t usual[FOUND_USUAL];
 } point_chunk;
 
-/* False: outside the surface's box, so that nothing winds around it. */
-static int to_grid(int32_t out[3], const iso_solid *solid, const iso_vec3 *point) {
-    for (int k = 0; k < 3; k++) {
-        double mm = axis_of(point, k);
-        if (!(fabs(mm * solid->scale) <= 0x1p51)) /* NaN too */
-            return 0;
-        int64_t s = steps(mm, solid->scale) - solid->middle[k];
-        if (s < solid->min[k] || s > solid->max[k])
-            return 0;
-        out[k] = (int32_t)s;
-    }
-    return 1;
-}
-
 static void load(point_chunk *chunk, const iso_solid *solid, const iso_vec3 *point, int32_t count) {
     chunk->count = 0;
     for (int32_t i = 0; i < count; i++) {
         int32_t *p = chunk->point[chunk->count];
-        if (!to_grid(p, solid, &point[i]))
+        if (!grid_place(p, &solid->grid, &point[i]))
             continue;
         for (int k = 0; k < 3; k++)
             chunk->origin[3 * chunk->count + k] = (float)p[k];
@@ -193,8 +124,8 @@ static int shortest_way(const iso_solid *solid, const int32_t point[3]) {
     int best = 0;
     int64_t least = INT64_MAX;
     for (int k = 0; k < INSIDE_DIRECTIONS; k++) {
-        int64_t way = k & 1 ? (int64_t)point[k >> 1] - solid->min[k >> 1]
-                            : (int64_t)solid->max[k >> 1] - point[k >> 1];
+        int64_t way = k & 1 ? (int64_t)point[k >> 1] - solid->grid.min[k >> 1]
+                            : (int64_t)solid->grid.max[k >> 1] - point[k >> 1];
         if (way < least) {
             least = way;
             best = k;
