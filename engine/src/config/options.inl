@@ -407,9 +407,9 @@ ISO_OPTION(filament_max_volumetric_speed, NUMBER, "0", "mm3/s", 0, 1000, "Filame
 ISO_OPTION(extrusion_multiplier, NUMBER, "1", "", 0.1, 10, "Filament",
            "Factor on the amount of every extrusion.")
 ISO_OPTION(temperature, INTEGER, "200", "C", 0, 600, "Filament",
-           "Temperature of the nozzle above the first layer; 0 leaves it alone.")
+           "Temperature of the nozzle, or of both, above the first layer; 0 leaves it alone.")
 ISO_OPTION(first_layer_temperature, INTEGER, "200", "C", 0, 600, "Filament",
-           "Temperature of the nozzle on the first layer; 0 leaves it alone.")
+           "Temperature of the nozzle, or of both, on the first layer; 0 leaves it alone.")
 ISO_OPTION(bed_temperature, INTEGER, "0", "C", 0, 300, "Filament",
            "Temperature of the bed above the first layer; 0 leaves it alone.")
 ISO_OPTION(first_layer_bed_temperature, INTEGER, "0", "C", 0, 300, "Filament",
