@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "lattice/sheet.h"
+#include "lattice/portion.h"
 #include "planar/island.h"
 
 /* Of the volume that beads have at first: what it may be multiplied by to be that of the section.
@@ -188,7 +188,7 @@ static iso_status draw_island(bulk *b, const iso_region *section, const iso_isla
     }
     scale = scale < SCALE_LEAST ? SCALE_LEAST : scale < SCALE_MOST ? scale : SCALE_MOST;
     settle(b, begin, scale);
-    return ISO_OK;
+    return portion_out(b->out, begin, &b->island, &b->bead, b->scratch);
 }
 
 iso_status bulk_draw(iso_paths *out, const iso_region *section, const iso_fill_options *fill,

@@ -29,6 +29,7 @@ sheet_bead sheet_bead_of(const iso_fill_options *fill) {
                         .least = LEAST * net,
                         .most = MOST * net,
                         .corners = corners * height,
+                        .told = WIDTH_TOLD * net,
                         .tolerance = fill->deviation > tolerance ? fill->deviation : tolerance};
 }
 
@@ -44,6 +45,9 @@ static double limit_of(const sheet_bead *bead, int lines) {
  */
 #define SCALE_LEAST 0.75
 #define SCALE_MOST 1.15
+/* Of several side by side: they'd lie over each other, or leave seams. */
+#define SCALE_LEAST_SEVERAL 0.95
+#define SCALE_MOST_SEVERAL 1.05
 
 typedef struct drawing {
     const samples *samples;
@@ -160,7 +164,7 @@ static iso_weave_bead bead_of(const drawing *d, double width, int32_t told) {
     width *= d->scale;
     width = width > bead->least ? width : bead->least;
     double full = width + bead->corners;
-    if (fabs(full - told) > WIDTH_TOLD * bead->usual)
+    if (fabs(full - told) > bead->told)
         told = (int32_t)(full + 0.5);
     return (iso_weave_bead){told, (int32_t)(width * bead->height + 0.5)};
 }
@@ -416,7 +420,8 @@ static iso_status draw_zone(drawing *d, bool *suits) {
     if (!d->samples->repeats)
         measure_squares(&sum, d);
     d->scale = sum.drawn > 0 ? sum.section / sum.drawn : 1;
-    *suits = d->scale >= SCALE_LEAST && d->scale <= SCALE_MOST;
+    *suits = d->lines == 1 ? d->scale >= SCALE_LEAST && d->scale <= SCALE_MOST
+                           : d->scale >= SCALE_LEAST_SEVERAL && d->scale <= SCALE_MOST_SEVERAL;
     if (!*suits)
         return ISO_OK;
     for (int line = 0; line < d->lines; line++)

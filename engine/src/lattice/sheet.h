@@ -10,6 +10,7 @@ typedef struct sheet_bead {
     double height, usual; /* usual: net width */
     double least, most;   /* net widths that are drawn: thinner ones get the least */
     double corners;       /* the full width is the net one and this: round sides */
+    double told;          /* a width may be off by so much, so that not every piece tells its own */
     double tolerance;     /* how far a bead's line may lie from the true one */
 } sheet_bead;
 
