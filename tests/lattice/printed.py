@@ -1,9 +1,11 @@
 """What a printer would leave of a G-code file: beads, and how much of a window they fill.
 
-Two measures that share nothing but the reading of the file: bead volume is the filament that goes in
-between the window's walls; the voxel count asks of points on a fine grid whether a bead covers them,
-so that beads over beads count once, and closes seams between them. A bead is a box as wide as its filament makes it at the layer's
-height, with round corners where the nozzle turns.
+Two measures that share nothing but the reading of the file: bead volume is the filament that goes
+in between the window's walls; the voxel count asks of points on a fine grid whether a bead covers
+them. A bead is a box as wide as its filament makes it at the layer's height, with round corners
+where the nozzle turns. Beads over beads count once, and plastic can't be pressed together: what
+they have too much flows into seams and to the sides near by, as far as there is so much, and as far
+as there is room for it; what is buried deeper is lost for this count.
 """
 import math
 import re
@@ -14,8 +16,10 @@ FILAMENT = math.pi / 4 * 1.75**2
 WORD = re.compile(r"([XYZEF])(-?[0-9.]+)")
 
 
-# mm. What overlapping beads have too much flows into seams between them up to twice as wide.
-SEAM = 0.15
+# mm. Seams are up to twice SEAM wide, beads swell by SIDE at most; plastic flows no further than
+# FLOW.
+SEAM, SIDE, FLOW = 0.15, 0.1, 1.0
+STRIPS = 10  # of a bead, side by side
 
 
 def swell(grid, radius):
@@ -32,22 +36,29 @@ def swell(grid, radius):
     return out
 
 
+def summed(grid, tiles):
+    """Over each of so many tiles."""
+    rows = np.array_split(np.arange(grid.shape[0]), tiles[0])
+    columns = np.array_split(np.arange(grid.shape[1]), tiles[1])
+    return np.array([[grid[r[0]:r[-1] + 1, c[0]:c[-1] + 1].sum() for c in columns] for r in rows])
+
+
 class Beads:
     """x0 y0 x1 y1 of every bead (mm), its width, its layer; `linked` where it goes on from the one
     before without a travel. Layers have bottom and height."""
 
     def __init__(self, path):
-        at, z, height, tool = [0.0, 0.0], 0.0, 0.0, 0
+        at, z, tool, begun = [0.0, 0.0], 0.0, 0, True
         ends, area, layer, linked, tools, self.layers = [], [], [], [], [], []
         drawing = False
         with open(path) as file:
             for line in file:
                 if line.startswith(";Z:"):
                     z = float(line[3:])
-                elif line.startswith(";HEIGHT:"):
-                    height = float(line[8:])
-                    if not self.layers or self.layers[-1][0] < z - height / 2:
-                        self.layers.append((z - height, height))
+                    begun = False
+                elif line.startswith(";HEIGHT:") and not begun:
+                    height, begun = float(line[8:]), True  # later ones are of single beads
+                    self.layers.append((z - height, height))
                 elif line[0] == "T" and line[1:2].isdigit():
                     tool = int(line[1:])
                 elif line.startswith(("G1 ", "G0 ")):
@@ -73,18 +84,22 @@ class Beads:
     def share_of_filament(self, low, high):
         """Of the box from low to high, the part that the filament put there would fill."""
         dx, dy = self.ends[:, 2] - self.ends[:, 0], self.ends[:, 3] - self.ends[:, 1]
-        begin, end = np.zeros(len(dx)), np.ones(len(dx))
-        for axis, d in ((0, dx), (1, dy)):
-            a = self.ends[:, axis]
-            with np.errstate(divide="ignore", invalid="ignore"):
-                t0, t1 = (low[axis] - a) / d, (high[axis] - a) / d
-            inside = (a >= low[axis]) & (a <= high[axis])
-            t0, t1 = np.where(d == 0, np.where(inside, 0, 1), np.minimum(t0, t1)), np.where(
-                d == 0, np.where(inside, 1, 0), np.maximum(t0, t1))
-            begin, end = np.maximum(begin, t0), np.minimum(end, t1)
-        length = np.hypot(dx, dy) * np.maximum(end - begin, 0)
-        volume = length * self.width * self.thickness(low[2], high[2])[self.layer]
-        return volume.sum() / np.prod(np.subtract(high, low))
+        length = np.hypot(dx, dy)
+        section = self.width * self.thickness(low[2], high[2])[self.layer]
+        volume = 0.0
+        for strip in range(STRIPS):  # beads lie on both sides of the window's walls
+            off = self.width * ((strip + 0.5) / STRIPS - 0.5) / length
+            begin, end = np.zeros(len(dx)), np.ones(len(dx))
+            for axis, d, a in ((0, dx, self.ends[:, 0] - off * dy),
+                               (1, dy, self.ends[:, 1] + off * dx)):
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    t0, t1 = (low[axis] - a) / d, (high[axis] - a) / d
+                inside = (a >= low[axis]) & (a <= high[axis])
+                t0, t1 = (np.where(d == 0, np.where(inside, 0, 1), np.minimum(t0, t1)),
+                          np.where(d == 0, np.where(inside, 1, 0), np.maximum(t0, t1)))
+                begin, end = np.maximum(begin, t0), np.minimum(end, t1)
+            volume += (length * np.maximum(end - begin, 0) * section).sum() / STRIPS
+        return volume / np.prod(np.subtract(high, low))
 
     def thickness(self, low, high):
         """Of each layer, as much as lies between the two heights."""
@@ -94,18 +109,30 @@ class Beads:
         """The same by points on a grid, in the middle of each layer."""
         thickness = self.thickness(low[2], high[2])
         counts = [int(round((high[k] - low[k]) / step)) for k in (0, 1)]
+        tiles = [max(1, int(round((high[k] - low[k]) / FLOW))) for k in (0, 1)]
         share = 0.0
         margin = int(round(SEAM / step))
+        inner = slice(margin, -margin)
         for layer in np.flatnonzero(thickness):
-            wide = self.cover(layer, [v - margin * step for v in low], step,
-                              [n + 2 * margin for n in counts])
-            closed = ~swell(~swell(wide, margin), margin)
-            share += thickness[layer] * closed[margin:-margin, margin:-margin].mean()
+            wide, laid = self.cover(layer, [v - margin * step for v in low], step,
+                                    [n + 2 * margin for n in counts])
+            room = ~swell(~swell(wide, margin), margin) | swell(wide, int(round(SIDE / step)))
+            room = (room & ~wide)[inner, inner]
+            wide, laid = wide[inner, inner], laid[inner, inner]
+            over = np.maximum(summed(laid - wide, tiles), 0)
+            full = wide.sum() + np.minimum(over, summed(room, tiles)).sum()
+            share += thickness[layer] * full / wide.size
         return share / (high[2] - low[2])
 
     def cover(self, layer, low, step, counts):
-        grid = np.zeros(counts, bool)
-        for k in np.flatnonzero(self.layer == layer):
+        """Is a point covered, and how often is plastic laid there?"""
+        grid, laid = np.zeros(counts, bool), np.zeros(counts, np.int16)
+        near = self.layer == layer
+        for axis in (0, 1):
+            a, b = self.ends[:, axis], self.ends[:, axis + 2]
+            near &= np.maximum(a, b) + self.width / 2 > low[axis]
+            near &= np.minimum(a, b) - self.width / 2 < low[axis] + counts[axis] * step
+        for k in np.flatnonzero(near):
             x0, y0, x1, y1 = self.ends[k]
             half = self.width[k] / 2
             first = [max(0, int((min(p) - half - low[axis]) / step))
@@ -120,8 +147,10 @@ class Beads:
             ux, uy = (x1 - x0) / length, (y1 - y0) / length
             along = (x - x0) * ux + (y - y0) * uy
             across = np.abs((y - y0) * ux - (x - x0) * uy)
-            part = (along >= 0) & (along <= length) & (across <= half)
+            part = (along >= 0) & (along < length) & (across <= half)
+            here = slice(first[0], last[0]), slice(first[1], last[1])
+            laid[here] += part
             if self.linked[k]:
                 part |= (x - x0)**2 + (y - y0)**2 <= half**2
-            grid[first[0]:last[0], first[1]:last[1]] |= part
-        return grid
+            grid[here] |= part
+        return grid, laid
