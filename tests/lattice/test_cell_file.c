@@ -233,6 +233,39 @@ static void test_mask(void) {
     cell_free(&gyroid);
 }
 
+/* Made of one picture that has these greys in two halves, or a stripe of the second one. */
+static int make_of_greys(iso_lattice_cell *cell, uint8_t left, uint8_t right, int first, int end) {
+    uint8_t grey[8 * 8];
+    for (int i = 0; i < 8 * 8; i++)
+        grey[i] = i % 8 >= first && i % 8 < end ? right : left;
+    write_picture(in_folder("greys.png"), grey, 8, 8);
+    int made = make(cell, in_folder("greys.png"));
+    remove(in_folder("greys.png"));
+    return made;
+}
+
+/* What is lighter than half grey is solid, by however little. */
+static void test_half_grey(void) {
+    iso_lattice_cell cell;
+    if (!make_of_greys(&cell, 125, 130, 4, 8))
+        return;
+    CHECK_NEAR(0.5, cell_density(&cell, 0), 0.02);
+    CHECK(cell_distance(&cell, 0.25, 0, 0) > 0.1 && cell_distance(&cell, 0.75, 0, 0) < -0.1);
+    cell_free(&cell);
+}
+
+/* A stripe at the box's end is as near from beyond it, where the next box begins. */
+static void test_end_of_the_box(void) {
+    iso_lattice_cell cell;
+    if (!make_of_greys(&cell, 0, 255, 7, 8))
+        return;
+    CHECK_NEAR(1.0 / 8, cell_density(&cell, 0), 0.02);
+    for (double d = 0; d < 0.5; d += 0.01)
+        CHECK_NEAR(cell_distance(&cell, 7.5 / 8 - d, 0, 0), cell_distance(&cell, 7.5 / 8 + d, 0, 0),
+                   1e-3);
+    cell_free(&cell);
+}
+
 static void test_missing(void) {
     iso_lattice_cell cell;
     iso_lattice_options options = iso_lattice_defaults();
@@ -259,6 +292,8 @@ int main(void) {
     RUN(test_pictures);
     RUN(test_distance_grid);
     RUN(test_mask);
+    RUN(test_half_grey);
+    RUN(test_end_of_the_box);
     RUN(test_missing);
     rmdir(folder);
     return check_verdict();
