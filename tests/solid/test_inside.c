@@ -400,6 +400,43 @@ static void test_fine(void) {
     }
 }
 
+/* The tree's floats are 64 to 128 steps apart here: a border and a point next to it on its inner
+ * side become the same number, and the box must be among those that the ray meets all the same. */
+static void test_borders_rounded_to_floats(void) {
+    enum { BOXES = 40, NEAR = 25 };
+    static iso_vec3 point[6 * NEAR];
+    static int32_t winding[6 * NEAR];
+    const double step = 0x1p-23;
+    for (int i = 0; i < BOXES; i++) {
+        test_shape shape = {0};
+        iso_mesh mesh;
+        iso_solid *solid;
+        double low = 4 * (i % 2 ? 1 : 46) + 37 * i * step, high = low + 8 - 53 * i * step;
+        shape_box(&shape, (iso_vec3){0}, (iso_vec3){200, 200, 200}, 1);
+        shape_box(&shape, (iso_vec3){low, low, low}, (iso_vec3){high, high, high}, 1);
+        shape_mesh(&mesh, &shape);
+        for (int k = 0; k < 6 * NEAR; k++) { /* at two borders within, the third one's middle */
+            double off = (1 + k / 6 * (k / 6)) * step, away = off + (k % 4) * step;
+            double a = k % 2 ? low + off : high - off, b = k % 4 < 2 ? low + away : high - away;
+            double middle = (low + high) / 2 + k * step;
+            point[k] = k % 3 == 0   ? (iso_vec3){middle, a, b}
+                       : k % 3 == 1 ? (iso_vec3){b, middle, a}
+                                    : (iso_vec3){a, b, middle};
+        }
+        iso_winding_options options = {.directions = 6};
+        if (CHECK_OK(iso_solid_new(&solid, &mesh, 1)) &&
+            CHECK_OK(iso_solid_winding(winding, NULL, solid, point, 6 * NEAR, &options))) {
+            int wrong = 0;
+            for (int k = 0; k < 6 * NEAR; k++)
+                wrong += winding[k] != 2;
+            CHECK_EQUAL(0, wrong);
+        }
+        iso_solid_free(solid);
+        shape_mesh_free(&mesh);
+        shape_free(&shape);
+    }
+}
+
 static void test_nothing(void) {
     iso_mesh mesh = {0};
     iso_vec3 point = {0};
@@ -542,6 +579,7 @@ int main(int count, char **argument) {
     RUN(test_sides_that_count);
     RUN(test_analytic);
     RUN(test_fine);
+    RUN(test_borders_rounded_to_floats);
     RUN(test_nothing);
     RUN(test_open_box);
     RUN(test_long_row);
