@@ -1,7 +1,7 @@
-"""draw.py ISOSLICE SAMPLE FOLDER: all pictures of the documents, drawn anew by isoslice itself.
+"""draw.py ISOSLICE SAMPLE FOLDER [LATTICE...]: all pictures of the documents, drawn anew by isoslice itself.
 
 ISOSLICE is the program, SAMPLE the maker of the sample part (build/release/tests/models/isoslice-sample),
-FOLDER where the pictures go. `./dev pictures` draws them in place."""
+FOLDER where the pictures go, LATTICE a pattern to draw instead of all. `./dev pictures` draws them in place."""
 
 import pathlib
 import subprocess
@@ -63,7 +63,8 @@ def main():
         arrange(work)
     for script in ("tests/fill/draw_patterns.sh", "tests/path/draw_paths.sh"):
         run("sh", ROOT / script, PROGRAM, FOLDER)
-    run(sys.executable, "-B", ROOT / "docs/pictures/draw_lattices.py", PROGRAM, FOLDER)
+    run(sys.executable, "-B", ROOT / "docs/pictures/draw_lattices.py", PROGRAM, FOLDER,
+        *sys.argv[4:])
 
 
 def arrange(work):

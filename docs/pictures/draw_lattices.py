@@ -1,5 +1,6 @@
-"""draw_lattices.py ISOSLICE FOLDER: the pictures of docs/lattices.md. A section of each lattice, cut by
-`isoslice contours` out of what `isoslice lattice` made, and layers of prints."""
+"""draw_lattices.py ISOSLICE FOLDER [PATTERN...]: the pictures of docs/lattices.md. A section of each
+lattice (or of those named alone, as for a test), cut by `isoslice contours` out of what `isoslice
+lattice` made, and layers of prints."""
 
 import json
 import math
@@ -22,6 +23,7 @@ PATTERNS = """
     gyroid_solid primitive_solid diamond_solid iwp_solid neovius_solid fischer_koch_solid
     bcc_struts fcc_struts octet_struts kelvin_struts diamond_struts foam_struts
     foam_sheet bone_sheet bone_solid voxel_cubic voxel_random voxel_file""".split()
+PATTERNS = sys.argv[3:] or PATTERNS
 COLUMNS, STEP, LINE, SCALE = 6, 17, 2.6, 25  # squares in a row, their distance; units a mm
 FINE = 1  # units that a line may be off
 
@@ -100,7 +102,7 @@ def draw_sections(work):
     """All of them in one picture."""
     write_stl(work / "slab.stl", box((0, 0, 0), (SIDE, SIDE, 2 * LEVEL)))
     draw_cell(work / "cell")
-    rows = len(PATTERNS) // COLUMNS
+    rows = math.ceil(len(PATTERNS) / COLUMNS)
     wide, high = COLUMNS * STEP + 1, rows * (STEP + LINE) + 1
     half = SIDE * SCALE / 2
     drawn = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide * 8}" height="{high * 8:.0f}" '
@@ -118,10 +120,10 @@ def draw_sections(work):
     (FOLDER / "lattice-patterns.svg").write_text("\n".join([*drawn, "</svg>", ""]))
 
 
-def draw(work, name, verb, model, layer, *options):
+def draw(work, name, model, layer, *options):
     """A layer of a print."""
     write_stl(work / "model.stl", model)
-    run(PROGRAM, *verb, "-q", work / "model.stl", "-o", work / "model.gcode", "--layer-height", "0.2",
+    run(PROGRAM, "-q", work / "model.stl", "-o", work / "model.gcode", "--layer-height", "0.2",
         "--first-layer-height", "0.2", "--skirts", "0", "--perimeters", "1", "--top-solid-layers", "0",
         "--bottom-solid-layers", "0", *options)
     run(PROGRAM, "preview", "-q", work / "model.gcode", "-o", FOLDER / f"{name}.svg", "--layers", layer,
@@ -132,13 +134,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         draw_sections(work)
-        draw(work, "lattice-graded", [], box((0, 0, 0), (54, 21, 3)), 8, "--fill-pattern", "gyroid_sheet",
+        draw(work, "lattice-graded", box((0, 0, 0), (54, 21, 3)), 8, "--fill-pattern", "gyroid_sheet",
              "--lattice-cell", "6", "--lattice-density", "ramp(x, -25, 25, 12, 70)", "--gcode-resolution",
              "0.04")
-        draw(work, "lattice-cylinder", ["lattice"], plate_with_hole(16, 3, 8), 7, "--fill-pattern",
+        draw(work, "lattice-cylinder", plate_with_hole(16, 3, 8), 7, "--fill-pattern",
              "gyroid_sheet", "--lattice-map", "cylinder", "--lattice-cell", "5", "--fill-density", "30%",
-             "--gcode-resolution", "0.04")
-        draw(work, "lattice-skin", [], turned([(13, 0), (13, 20)], 120, lobes=5, depth=0.2), 68,
+             "--gcode-resolution", "0.04", "--perimeters", "0")
+        draw(work, "lattice-skin", turned([(13, 0), (13, 20)], 120, lobes=5, depth=0.2), 68,
              "--fill-pattern", "gyroid_sheet", "--lattice-cell", "6", "--lattice-density",
              "ramp(skin, 1, 6, 70, 12)", "--gcode-resolution", "0.05")
 
