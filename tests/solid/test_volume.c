@@ -216,6 +216,13 @@ static void test_box_cuts(void) {
             CHECK_NEAR(8.5, info.max.z, 1e-12);
             CHECK(info.bytes < 600000); /* its bits alone would be 13,000; a root's child is more */
         }
+        /* a face where a block begins counts in the block before, too */
+        for (int k = 0; k < 4 && kind == 1; k++) {
+            const iso_vec3 at = {17 - 0.25 * k, 7, 4.75};
+            double distance;
+            CHECK_OK(volume_sample(&distance, volume, &at, 1));
+            CHECK_NEAR(-0.25 * k, distance, 1e-6);
+        }
         float *t;
         int64_t count;
         CHECK_OK(volume_surface(&t, &count, volume, 0));
