@@ -155,6 +155,14 @@ static iso_status warn_of_figures(work *w) {
                             "voxels of %.3g mm are too coarse for walls of %.3g mm: --voxel %.2g "
                             "or a larger lattice_cell would hold them",
                             f->voxel, f->wall_smallest, f->wall_smallest / 3));
+    double width =
+        iso_options_width(&settings, ISO_ROLE_INTERNAL_INFILL, false, settings.layer_height);
+    if (f->wall_mean > 0 && f->wall_mean < width / 4 && w->format == FORMAT_GCODE)
+        ISO_TRY(iso_report_warn(&w->report, "lattice-thin",
+                                "walls of %.2g mm are thinner than the narrowest beads, so the "
+                                "print is denser than asked: a larger lattice_cell, more density "
+                                "or a finer nozzle would help",
+                                f->wall_mean));
     if (f->left > 0 || f->removed_volume > 0.01 * f->volume)
         ISO_TRY(iso_report_warn(&w->report, "lattice-pieces",
                                 "%lld pieces hold to nothing: %lld were removed, %.4g mm3 in all",

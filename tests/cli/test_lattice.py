@@ -135,6 +135,14 @@ class Lattice(unittest.TestCase):
         self.lattice("-o", "skin.gcode", "--lattice-cell", "6", "--lattice-skin", "0.8")
         self.assertIn("erimeter\n", (self.at / "skin.gcode").read_text())
 
+    def test_walls_thinner_than_beads_are_told(self):
+        """5 % of cells of 3 mm are walls of 0.05 mm."""
+        for density, cell, code in (("5%", "3", ["lattice-thin"]), ("25%", "4", [])):
+            self.run_it("lattice", "part.stl", "-o", "out.gcode", "--lattice-cell", cell, "--fill-density",
+                        density, "--report", "out.json")
+            report = json.loads((self.at / "out.json").read_text())
+            self.assertEqual(code, [w["code"] for w in report["warnings"]])
+
     def test_gcode_without_modules(self):
         """Beside a program that is by itself there is none."""
         alone = self.at / "alone"
@@ -163,6 +171,7 @@ class Lattice(unittest.TestCase):
                 (6, "fill_pattern", "part.stl", "-o", "out.stl", "--fill-pattern", "grid"),
                 (6, "lattice_skin", "part.stl", "-o", "out.stl", "--lattice-drain", "0,0"),
                 (6, "lattice_cell", "part.stl", "-o", "out.stl", "--lattice-cell", "x +"),
+                (6, "without a unit", "part.stl", "-o", "out.stl", "--lattice-density", "30%"),
                 (7, "nowhere", "part.stl", "-o", "nowhere/out.stl", "--voxel", "0.4"),
                 (69, "GB", "part.stl", "-o", "out.stl", "--voxel", "0.001")):
             before = sorted(self.at.rglob("*"))

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 static const char *const names[GRADING_VARIABLES] = {
     [GRADING_X] = "x",       [GRADING_Y] = "y", [GRADING_Z] = "z",
@@ -12,7 +13,8 @@ iso_status grading_make(iso_grading *grading, const char *text, const char *opti
     iso_status status =
         expression_compile(&grading->expression, text ? text : "", names, GRADING_VARIABLES);
     if (status == ISO_BAD_CONFIG)
-        return iso_fail(status, "%s, %s", option, iso_error_message());
+        return iso_fail(status, "%s, %s%s", option, iso_error_message(),
+                        text && strchr(text, '%') ? "; numbers stand there without a unit" : "");
     ISO_TRY(status);
     if (grading_only_variable(grading) != -1)
         return ISO_OK;
