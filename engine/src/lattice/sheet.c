@@ -45,9 +45,9 @@ static double limit_of(const sheet_bead *bead, int lines) {
  */
 #define SCALE_LEAST 0.75
 #define SCALE_MOST 1.15
-/* Of several side by side: they'd lie over each other, or leave seams. */
-#define SCALE_LEAST_SEVERAL 0.95
-#define SCALE_MOST_SEVERAL 1.05
+/* Where sheets that take several lines fill more than this, pores are about as narrow as beads, and
+ * lines of one sheet lie over those of the next. */
+#define SEVERAL_MOST 0.65
 
 typedef struct drawing {
     const samples *samples;
@@ -346,14 +346,15 @@ static double drawn_area(const drawing *d, const contour *c, bool all) {
 }
 
 typedef struct share { /* in squares of the grid */
-    double section, drawn;
+    double section, drawn, squares;
 } share;
 
-static double section_of(const drawing *d, int32_t i, int32_t j) {
+static void add_square(share *sum, const drawing *d, int32_t i, int32_t j) {
     double half = samples_half(d->samples, j)[i];
-    return half > thin_limit(d) && half <= limit_of(d->bead, d->lines)
-               ? samples_share(d->samples, i, j)
-               : 0;
+    if (half > thin_limit(d) && half <= limit_of(d->bead, d->lines)) {
+        sum->section += samples_share(d->samples, i, j);
+        sum->squares++;
+    }
 }
 
 /* Of one period, whatever the region. */
@@ -369,7 +370,8 @@ static iso_status measure_period(share *sum, drawing *d) {
         iso_arena_pop(d->scratch, mark);
     }
     ISO_TRY(samples_period_share(&sum->section, d->samples, d->scratch));
-    sum->section *= (double)d->samples->period * d->samples->period;
+    sum->squares = (double)d->samples->period * d->samples->period;
+    sum->section *= sum->squares;
     return ISO_OK;
 }
 
@@ -379,7 +381,7 @@ static void measure_squares(share *sum, const drawing *d) {
     for (int32_t j = 0; j + 1 < r->rows; j++)
         for (int32_t i = 0; i + 1 < r->columns; i++)
             if (r->square[(int64_t)j * (r->columns - 1) + i] == RASTER_INSIDE)
-                sum->section += section_of(d, i, j);
+                add_square(sum, d, i, j);
 }
 
 /* ---- all of it ---- */
@@ -420,8 +422,8 @@ static iso_status draw_zone(drawing *d, bool *suits) {
     if (!d->samples->repeats)
         measure_squares(&sum, d);
     d->scale = sum.drawn > 0 ? sum.section / sum.drawn : 1;
-    *suits = d->lines == 1 ? d->scale >= SCALE_LEAST && d->scale <= SCALE_MOST
-                           : d->scale >= SCALE_LEAST_SEVERAL && d->scale <= SCALE_MOST_SEVERAL;
+    *suits = d->scale >= SCALE_LEAST && d->scale <= SCALE_MOST &&
+             (d->lines == 1 || sum.section <= SEVERAL_MOST * sum.squares);
     if (!*suits)
         return ISO_OK;
     for (int line = 0; line < d->lines; line++)
