@@ -151,6 +151,6 @@ class Beads:
             here = slice(first[0], last[0]), slice(first[1], last[1])
             laid[here] += part
             if self.linked[k]:
-                part |= (x - x0)**2 + (y - y0)**2 <= half**2
+                part |= (x - x0)**2 + (y - y0)**2 <= min(half, self.width[k - 1] / 2)**2
             grid[here] |= part
         return grid, laid
