@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "solid/crumbs.h"
 #include "solid/misfit.h"
 #include "solid/soup.h"
 #include "solid/volume.h"
@@ -201,8 +202,9 @@ static iso_status build_signed(iso_volume **made, maker *m, const iso_mesh *soup
     return volume_build(made, &plan);
 }
 
-static iso_status make_signed(iso_volume **made, const iso_volume *near, const iso_vec3 *corner,
-                              const iso_mesh *soup, double voxel) {
+/* *level: where its surface is. */
+static iso_status make_signed(iso_volume **made, double *level, const iso_volume *near,
+                              const iso_vec3 *corner, const iso_mesh *soup, double voxel) {
     maker *m;
     iso_soup *turns = NULL;
     iso_volume *wide = NULL;
@@ -218,6 +220,9 @@ static iso_status make_signed(iso_volume **made, const iso_volume *near, const i
         m->voxel = voxel;
         status = build_signed(made, m, soup);
     }
+    const crumbs_options options = {soup->min, soup->max, voxel};
+    if (status == ISO_OK)
+        status = crumbs_level(level, *made, turns, &options);
     soup_free(turns);
     volume_free(wide);
     iso_release(m);
@@ -260,12 +265,13 @@ static iso_status extract(iso_mesh *mesh, const iso_volume *volume, double level
 static iso_status remake(iso_mesh *mesh, const iso_mesh *soup, const iso_vec3 *corner,
                          double thickness, double voxel) {
     iso_volume *near = NULL, *whole = NULL;
+    double level = thickness / 2;
     iso_status status =
         make_near(&near, corner, soup->triangle_count, voxel, thickness / 2 + FAR_AWAY * voxel);
     if (status == ISO_OK && thickness == 0)
-        status = make_signed(&whole, near, corner, soup, voxel);
+        status = make_signed(&whole, &level, near, corner, soup, voxel);
     if (status == ISO_OK)
-        status = extract(mesh, whole ? whole : near, thickness / 2, voxel);
+        status = extract(mesh, whole ? whole : near, level, voxel);
     if (status == ISO_OK)
         status = misfit_measure(&mesh->defects, mesh, soup, whole, thickness / 2, voxel);
     volume_free(near);
