@@ -1,6 +1,7 @@
 /* The table of options: defaults, ranges, texts, round trips, derived values. */
 #include <isoslice/config.h>
 
+#include <locale.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -461,6 +462,24 @@ static void test_misspelt_words_are_near_and_others_are_not(void) {
     CHECK(iso_option_suggest("x") == NULL);
 }
 
+static void test_density_of_a_lattice_in_any_locale(void) {
+    static const struct {
+        double percent;
+        const char *text;
+    } row[] = {{20, "20"}, {12.5, "12.5"}, {33.333333333, "33.333333333"}, {0, "0"}, {100, "100"}};
+    for (int german = 0; german < 2; german++) {
+        if (german)
+            setlocale(LC_NUMERIC, "de_DE.UTF-8"); /* where there is one */
+        for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+            char percent[32];
+            iso_options_defaults(&options);
+            options.fill_density = row[i].percent;
+            CHECK(strcmp(row[i].text, settings_of_lattice(&options, percent).density) == 0);
+        }
+    }
+    setlocale(LC_NUMERIC, "C");
+}
+
 int main(void) {
     RUN(test_numbers_are_read_as_the_c_library_does);
     RUN(test_what_is_no_number_is_refused);
@@ -484,6 +503,7 @@ int main(void) {
     RUN(test_options_that_do_not_go_together_are_refused);
     RUN(test_placeholders_are_filled_in);
     RUN(test_placeholders_of_a_layer);
+    RUN(test_density_of_a_lattice_in_any_locale);
     RUN(test_misspelt_words_are_near_and_others_are_not);
     return check_verdict();
 }

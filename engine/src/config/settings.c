@@ -1,7 +1,8 @@
 #include "config/settings.h"
 
 #include <math.h>
-#include <stdio.h>
+
+#include "gcode/number.h"
 
 /* A wall no longer around than a circle of this radius is a small one; the figure is PrusaSlicer's.
  */
@@ -242,7 +243,8 @@ void settings_of_combination(iso_layer_settings *s, const iso_options *options, 
 }
 
 iso_lattice_options settings_of_lattice(const iso_options *options, char percent[32]) {
-    snprintf(percent, 32, "%.9f", options->fill_density);
+    /* not by printf, whose decimal point is the locale's */
+    *iso_put_decimal(percent, (int64_t)(options->fill_density * 1e9 + 0.5), 9) = '\0';
     return (iso_lattice_options){.pattern = options->fill_pattern - ISO_PATTERN_LATTICE,
                                  .map = options->lattice_map,
                                  .cell = options->lattice_cell,
