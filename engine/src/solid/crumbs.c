@@ -8,8 +8,12 @@
 
 #include "base/memory.h"
 
-/* Points that are asked about. */
+/* Points that are asked about; of these, as many as tell whether the triangles fit together. */
 #define POINTS (1 << 17)
+#define FIRST_POINTS (1 << 12)
+/* Where they do, winding numbers are whole: so far from that is not, if many points are. */
+#define WHOLE 0.1
+#define MANY 0.25
 #define AT_ONCE 256
 /* Mean length of what lines through it have inside, voxels: less is finer than the grid. */
 #define CHORD 16.0
@@ -42,17 +46,21 @@ static iso_status measure(double *volume, double *area, const iso_volume *made, 
     return ISO_OK;
 }
 
+typedef struct shares {
+    double inside, loose; /* of the points: winding half or more; not whole */
+} shares;
+
 /* By multiples of the powers of 1 / 1.2207..., the root of x^4 = x + 1: they fill a box evenly, and
  * fall in step with no grid. */
-static double wound_volume(const iso_soup *soup, const crumbs_options *options) {
+static void wind(shares *found, const iso_soup *soup, const crumbs_options *options, int count) {
     static const double step[3] = {0.81917251339616444, 0.67104360670378921, 0.54970047790197026};
     const double low[3] = {options->min.x, options->min.y, options->min.z};
     const double side[3] = {options->max.x - low[0], options->max.y - low[1],
                             options->max.z - low[2]};
     double at[3] = {0.5, 0.5, 0.5}, winding[AT_ONCE];
     iso_vec3 point[AT_ONCE];
-    int64_t inside = 0;
-    for (int first = 0; first < POINTS; first += AT_ONCE) {
+    int64_t inside = 0, loose = 0;
+    for (int first = 0; first < count; first += AT_ONCE) {
         for (int i = 0; i < AT_ONCE; i++) {
             for (int k = 0; k < 3; k++) {
                 at[k] += step[k];
@@ -62,29 +70,33 @@ static double wound_volume(const iso_soup *soup, const crumbs_options *options) 
                                   low[2] + side[2] * at[2]};
         }
         soup_winding(winding, soup, point, AT_ONCE);
-        for (int i = 0; i < AT_ONCE; i++)
+        for (int i = 0; i < AT_ONCE; i++) {
             inside += winding[i] >= 0.5;
+            loose += fabs(winding[i] - floor(winding[i] + 0.5)) > WHOLE;
+        }
     }
-    return side[0] * side[1] * side[2] * (double)inside / POINTS;
-}
-
-/* Three standard deviations of it, if the points were thrown at random. */
-static double unsure(double volume, const crumbs_options *options) {
-    iso_vec3 min = options->min, max = options->max;
-    double box = (max.x - min.x) * (max.y - min.y) * (max.z - min.z);
-    return 3 * sqrt(volume * fmax(box - volume, 0) / POINTS);
+    *found = (shares){(double)inside / count, (double)loose / count};
 }
 
 iso_status crumbs_level(double *level, const iso_volume *made, const iso_soup *soup,
                         const crumbs_options *options) {
     double volume, area;
+    shares found;
     *level = 0;
     ISO_TRY(measure(&volume, &area, made, 0));
     if (!(4 * volume < CHORD * options->voxel * area))
         return ISO_OK;
-    double wanted = wound_volume(soup, options), low = -FARTHEST, high = FARTHEST;
-    if (fabs(volume - wanted) < fmax(NO_MATTER * wanted, unsure(wanted, options)))
+    wind(&found, soup, options, FIRST_POINTS);
+    if (found.loose < MANY)
         return ISO_OK;
+    wind(&found, soup, options, POINTS);
+    iso_vec3 min = options->min, max = options->max;
+    double box = (max.x - min.x) * (max.y - min.y) * (max.z - min.z), wanted = found.inside * box;
+    /* three standard deviations, if the points were thrown at random */
+    double unsure = 3 * box * sqrt(found.inside * (1 - found.inside) / POINTS);
+    if (fabs(volume - wanted) < fmax(NO_MATTER * wanted, unsure))
+        return ISO_OK;
+    double low = -FARTHEST, high = FARTHEST;
     for (int n = 0; n < STEPS_MAX && fabs(volume - wanted) > CLOSE * wanted; n++) {
         if (volume < wanted)
             low = *level;
@@ -92,7 +104,7 @@ iso_status crumbs_level(double *level, const iso_volume *made, const iso_soup *s
             high = *level;
         /* as far as the surface would move to enclose it, if that's between the bounds */
         double next = *level + (area > 0 ? (wanted - volume) / (area * options->voxel) : INFINITY);
-        *level = (next > low && next < high ? next : (low + high) / 2);
+        *level = next > low && next < high ? next : (low + high) / 2;
         ISO_TRY(measure(&volume, &area, made, *level * options->voxel));
     }
     *level *= options->voxel;

@@ -13,9 +13,9 @@ typedef struct crumbs_options {
     double voxel;
 } crumbs_options;
 
-/* The value at which the surface of `made` is to be taken: 0, or, where that surface's mean chord
- * is less than 16 voxels and it encloses clearly more or less, the one at which it encloses as much
- * of the box as winds by half or more. */
+/* The value at which the surface of `made` is to be taken. It is 0, or, where the triangles hardly
+ * fit together, that surface's mean chord is less than 16 voxels, and it encloses clearly more or
+ * less than what winds by half or more: the one at which it encloses as much. */
 iso_status crumbs_level(double *level, const iso_volume *made, const iso_soup *soup,
                         const crumbs_options *options) ISO_MUST_CHECK;
 
