@@ -102,7 +102,9 @@ class Guide(unittest.TestCase):
             height = re.search(r"(?m)^; max_print_height = (\S+)", text)[1]
             if flavour not in ("marlin", "marlin2"):
                 continue
-            done = subprocess.run([PRINTER, "--run", path, "--bed", f"{size[1]}x{size[2]}x{height}"],
+            tools = "2" if re.search(r"(?m)^; lattice_material = \S", text) else "1"
+            done = subprocess.run([PRINTER, "--run", path, "--tools", tools, "--bed",
+                                   f"{size[1]}x{size[2]}x{height}"],
                                   capture_output=True, timeout=120)
             self.assertEqual(0, done.returncode, done.stderr.decode()[:1000])
 
