@@ -157,6 +157,55 @@ class Lattice(unittest.TestCase):
         self.assertIn("lattice_open", run(6, "-o", "out.gcode", "--lattice-open"))
         self.assertIn("isoslice-", run(6, "-o", "out.stl"))
 
+    def test_what_needs_a_module_says_which_and_leaves_nothing(self):
+        alone = self.at / "alone"
+        alone.mkdir()
+        shutil.copy(PROGRAM, alone / "isoslice")
+        sheet = ("--fill-pattern", "gyroid_sheet")
+        for code, missing, *arguments in (
+                (0, "", *sheet, "--quiet"),
+                (0, "", *sheet, "--quiet", "--lattice-map", "cylinder", "--lattice-density", "10 + z"),
+                (6, "isoslice-solid.so", *sheet, "--lattice-map", "skin"),
+                (6, "isoslice-solid.so", *sheet, "--lattice-density", "10 * skin"),
+                (6, "isoslice-volume.so", *sheet, "--lattice-density", "grid", "--lattice-grid", "none.vdb"),
+                (6, "isoslice-volume.so", "--fill-pattern", "voxel_file", "--lattice-file", "none.vdb"),
+                (6, "isoslice-volume.so", "--fill-pattern", "voxel_file", "--lattice-file", "none%d.png"),
+                (6, "isoslice-volume.so", "--repair", "volume"),
+                (6, "isoslice-solid.so", "--check-solid", "full")):
+            done = subprocess.run([alone / "isoslice", "part.stl", "-o", "out.gcode", *arguments], cwd=self.at,
+                                  capture_output=True, timeout=250,
+                                  env={**os.environ, "ISOSLICE_MODULES": "/nonexistent"})
+            said = done.stderr.decode()
+            self.assertEqual(code, done.returncode, (arguments, said))
+            self.assertIn(missing, said)
+            self.assertEqual(code != 0, "install it" in said and "ISOSLICE_MODULES" in said, said)
+            self.assertEqual(code == 0, (self.at / "out.gcode").exists())
+            (self.at / "out.gcode").unlink(missing_ok=True)
+
+    def test_damaged_files_are_refused(self):
+        """Cut off anywhere, or with bytes that are others: read or refused as damaged."""
+        self.run_it("lattice", "part.stl", "-o", "cell.vdb", "--voxel", "0.8", "--quiet")
+        whole = (self.at / "cell.vdb").read_bytes()
+        random = numpy.random.default_rng(7)
+        # OpenVDB leaks what it has read so far of a damaged file.
+        environment = {**os.environ, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"}
+        for case in range(9):
+            bad = bytearray(whole)
+            if case % 3 == 0:
+                bad = bad[:int(random.integers(len(bad)))]
+            else:
+                for _ in range(8):
+                    bad[int(random.integers(len(bad)))] = int(random.integers(256))
+            (self.at / "bad.vdb").write_bytes(bad)
+            done = subprocess.run([PROGRAM, "part.stl", "--quiet", "-o", "out.gcode", "--fill-pattern", "voxel_file",
+                                   "--lattice-file", "bad.vdb"], cwd=self.at, capture_output=True, timeout=250,
+                                  env=environment)
+            said = done.stderr.decode(errors="replace")
+            self.assertIn(done.returncode, (0, 3) if case % 3 else (3,), said)
+            self.assertNotIn("Sanitizer", said)
+            if done.returncode:
+                self.assertIn("bad.vdb", said)
+
     def test_what_is_refused(self):
         write_stl(self.at / "broken.stl", box((0, 0, 0), (9, 9, 9))[:-2])
         for code, fragment, *arguments in (
