@@ -10,9 +10,9 @@
 #include "lattice/lattice.h"
 
 /* The material's section at height z (mm, of the meshes that the lattice was made with) within
- * `area`. Contoured on a grid by the up-crossing rule on squares (theta^4 = 1), blocks of the grid
- * that the distance proves empty or that don't meet the area aside. `shift` is the region's place
- * against the meshes, units. */
+ * `area`. Contoured on a grid by the up-crossing rule on squares (theta^4 = 1); rows are sampled no
+ * further than the area reaches, and of a uniform lattice one period alone. `shift` is the region's
+ * place against the meshes, units. */
 typedef struct iso_lattice_slice {
     const iso_lattice *lattice;
     double z;        /* mm */
