@@ -5,7 +5,8 @@ in between the window's walls; the voxel count asks of points on a fine grid whe
 them. A bead is a box as wide as its filament makes it at the layer's height, with round corners
 where the nozzle turns. Beads over beads count once, and plastic can't be pressed together: what
 they have too much flows into seams and to the sides near by, as far as there is so much, and as far
-as there is room for it; what is buried deeper is lost for this count.
+as there is room for it; what is buried deeper is lost for this count. Nor does it come from
+nothing: round corners take it from the beads.
 """
 import math
 import re
@@ -16,9 +17,9 @@ FILAMENT = math.pi / 4 * 1.75**2
 WORD = re.compile(r"([XYZEF])(-?[0-9.]+)")
 
 
-# mm. Seams are up to twice SEAM wide, beads swell by SIDE at most; plastic flows no further than
-# FLOW.
-SEAM, SIDE, FLOW = 0.15, 0.1, 1.0
+# mm. Seams are up to twice SEAM wide, about a bead; beads swell by SIDE at most; plastic flows about
+# a millimetre, so that squares of FLOW keep theirs.
+SEAM, SIDE, FLOW = 0.2, 0.1, 2.0
 STRIPS = 10  # of a bead, side by side
 
 
@@ -119,7 +120,7 @@ class Beads:
             room = ~swell(~swell(wide, margin), margin) | swell(wide, int(round(SIDE / step)))
             room = (room & ~wide)[inner, inner]
             wide, laid = wide[inner, inner], laid[inner, inner]
-            over = np.maximum(summed(laid - wide, tiles), 0)
+            over = summed(laid - wide, tiles)  # below 0: round corners are drawn out of beads
             full = wide.sum() + np.minimum(over, summed(room, tiles)).sum()
             share += thickness[layer] * full / wide.size
         return share / (high[2] - low[2])
