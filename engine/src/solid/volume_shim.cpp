@@ -649,6 +649,30 @@ iso_status grid_facts(volume_facts *facts, const volume_grid *grid, char *messag
 }
 
 template <typename accessor_type>
+void eight_values(double *value, const accessor_type &accessor, const int32_t *first) {
+    for (int i = 0; i < 8; i++) {
+        const Coord at(first[0] + (i & 1), first[1] + (i >> 1 & 1), first[2] + (i >> 2));
+        value[i] = static_cast<double>(accessor.getValue(at));
+    }
+}
+
+/* Two in three times all of them are in one leaf, which is then looked for once. */
+void eight_values(double *value, const FloatGrid::ConstUnsafeAccessor &accessor,
+                  const int32_t *first) {
+    const FloatTree::LeafNodeType *leaf = nullptr;
+    if ((first[0] & 7) < 7 && (first[1] & 7) < 7 && (first[2] & 7) < 7)
+        leaf = accessor.probeConstLeaf(Coord(first[0], first[1], first[2]));
+    if (!leaf) {
+        eight_values<FloatGrid::ConstUnsafeAccessor>(value, accessor, first);
+        return;
+    }
+    const float *at =
+        leaf->buffer().data() + ((first[0] & 7) << 6 | (first[1] & 7) << 3 | (first[2] & 7));
+    for (int i = 0; i < 8; i++)
+        value[i] = static_cast<double>(at[(i & 1) << 6 | (i & 2) << 2 | i >> 2]);
+}
+
+template <typename accessor_type>
 double trilinear(const accessor_type &accessor, const volume_grid *grid, const double *point,
                  double background) {
     double part[3];
@@ -661,13 +685,10 @@ double trilinear(const accessor_type &accessor, const volume_grid *grid, const d
         first[i] = static_cast<int32_t>(below);
         part[i] = index - below;
     }
-    double sum[4];
-    for (int i = 0; i < 4; i++) {
-        const Coord at(first[0], first[1] + (i & 1), first[2] + (i >> 1));
-        const double a = static_cast<double>(accessor.getValue(at));
-        const double b = static_cast<double>(accessor.getValue(at.offsetBy(1, 0, 0)));
-        sum[i] = a + (b - a) * part[0];
-    }
+    double sum[4], end[8];
+    eight_values(end, accessor, first);
+    for (int i = 0; i < 4; i++)
+        sum[i] = end[2 * i] + (end[2 * i + 1] - end[2 * i]) * part[0];
     const double low = sum[0] + (sum[1] - sum[0]) * part[1];
     const double high = sum[2] + (sum[3] - sum[2]) * part[1];
     return low + (high - low) * part[2];
