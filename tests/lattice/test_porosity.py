@@ -2,17 +2,16 @@
 
     test_porosity.py ISOSLICE PART.stl CELL FROM TO PATTERN...
 
-PART is a cube, or "cube" for one of 20 mm; each pattern is printed in it without walls or shells at 20, 50 and 80 %, and what
-lies within the box from FROM to TO (mm, from the part's corner, whole cells of CELL mm apart) is
-measured twice: by filament and by voxels. Both must be within 1 % of the volume. Of windows longer
-than two cells, which random patterns need, voxels are counted in every eighth layer, and filament
-tells what the layers between have more or less.
+PART is a cube, or "cube" for one of 20 mm; each pattern is printed in it without walls or shells at
+20, 50 and 80 %, and what lies within the box from FROM to TO (mm, from the part's corner, whole
+cells of CELL mm apart) is measured twice: by filament and by voxels. Both must be within 1 % of the
+volume. Of windows longer than two cells, which random patterns need, voxels are counted in every
+eighth layer, and filament tells what the layers between have more or less.
 
     test_porosity.py ISOSLICE PART.stl graded
 
 A cube of 20 mm whose density rises by 1.5 % a mm, in z and then in x: the means over slabs of 5 mm,
-one cell thick and two by two cells wide, must be within 2 % of what is asked in
-their middle.
+one cell thick and two by two cells wide, must be within 2 % of what is asked in their middle.
 """
 import os
 import struct
