@@ -82,7 +82,7 @@ typedef struct iso_lattice_options {
     const char *file;           /* of VOXEL_FILE; else not looked at */
     const char *grid;           /* a .vdb file for the variable `grid`; "" is none */
     const iso_lattice_cut *cut; /* NULL: none */
-    double skin_voxel;          /* mm; the distance to the skin is sampled so finely; 0: box / 64 */
+    double skin_voxel;          /* mm; the distance to the skin is sampled so finely; 0: box/128 */
 } iso_lattice_options;
 
 /* gyroid_sheet, cells of 5 mm, 20 percent, x y z. */

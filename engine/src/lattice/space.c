@@ -115,7 +115,7 @@ static iso_status make_skin(iso_space *space, const iso_lattice_options *options
     iso_vec3 side = {2 * space->max.x, 2 * space->max.y, space->max.z};
     double largest = greater(side.x, greater(side.y, side.z));
     double smallest = lesser(side.x, lesser(side.y, side.z));
-    double voxel = options->skin_voxel > 0 ? options->skin_voxel : largest / 64;
+    double voxel = options->skin_voxel > 0 ? options->skin_voxel : largest / 128;
     const iso_skin_options skin = {
         .origin = space->origin, .voxel = voxel, .inner = smallest / 2 + 2 * voxel};
     return skin_make(&space->skin, mesh, count, &skin);
