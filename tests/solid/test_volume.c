@@ -344,7 +344,7 @@ static uint64_t next_random(void) {
 
 /* OpenVDB 10 itself forgets the part of a tree that it was at when reading throws: some 270 KB for
  * a damaged file. */
-const char *__lsan_default_suppressions(void);
+__attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void) {
     return "leak:readTopology\n";
 }
