@@ -19,9 +19,9 @@ static void free_all(iso_paths layer[LAYERS]) {
 /* Says what it is asked. */
 static iso_status echo(char *text, size_t size, const void *payload, iso_gcode_text_kind kind,
                        const iso_gcode_place *place) {
-    static const char *const name[] = {"START",   "END",          "START FILAMENT", "END FILAMENT",
-                                       "BEFORE",  "LAYER",        "BETWEEN",        "COLOR",
-                                       "PAUSING", "FROM TEMPLATE"};
+    static const char *const name[] = {"START",  "END",     "START FILAMENT", "END FILAMENT",
+                                       "BEFORE", "LAYER",   "BETWEEN",        "TOOL CHANGE",
+                                       "COLOR",  "PAUSING", "FROM TEMPLATE"};
     const char *only = payload;
     *text = '\0';
     if (kind == ISO_TEXT_EVENT)

@@ -516,7 +516,8 @@ def printer_command(printer, out, s):
     x0, y0, x1, y1 = bed_of(s)
     rise = abs(float(s["z_offset"]))
     size = f"{x1 - x0:g}x{y1 - y0:g}x{float(s['max_print_height']) + 2 * rise + 0.001:.3f}"
-    return [printer, "--run", out, f"--bed={size}", f"--origin={x0:g},{y0:g},{-rise:g}",
+    tools = "2" if s.get("lattice_material") else "1"
+    return [printer, "--run", out, "--tools", tools, f"--bed={size}", f"--origin={x0:g},{y0:g},{-rise:g}",
             "--filament", s["filament_diameter"], "--max-nozzle", "300", "--max-flow", "100000"]
 
 

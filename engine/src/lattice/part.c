@@ -184,6 +184,16 @@ static void remove_loose(float *material, const iso_porous *porous, const iso_bo
             material[i] = fmaxf(material[i], (float)(0.5 * row->step));
 }
 
+/* Voxels on the part's very surface count as material, but a mesh has no thickness there: pieces
+ * that hold together by them alone would come apart in it. So they lie a thousandth of a voxel
+ * inside. */
+static void thicken_zeros(float *material, const iso_body_row *row) {
+    float least = (float)(-1e-3 * row->step);
+    for (int32_t i = 0; i < row->count; i++)
+        if (material[i] <= 0 && material[i] > least)
+            material[i] = least;
+}
+
 iso_status part_sample(void *payload, float *material, float *part, const iso_body_row *row,
                        int worker) {
     const iso_porous *porous = payload;
@@ -202,6 +212,7 @@ iso_status part_sample(void *payload, float *material, float *part, const iso_bo
     }
     combine(material, part, porous, row);
     drill(material, porous, row);
+    thicken_zeros(material, row);
     remove_loose(material, porous, row);
     return ISO_OK;
 }
