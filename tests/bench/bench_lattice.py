@@ -2,10 +2,10 @@
 
     bench_lattice.py ISOSLICE [--only NAME]
 
-    slicer  CPU of a 100 mm cube of gyroid, 4 mm cells, beside PrusaSlicer's gyroid of the same
+    slicer  CPU of a 100 mm cube of gyroid, 4 mm cells, layers of 0.2 mm, beside PrusaSlicer's gyroid of the same
             density, and of the same volume of beads (where it is installed)
     memory  of G-code: a column of 2 mm cells, 50 and 400 mm high, and that cube
-    volume  CPU and memory of 1 mm cells in cubes of 100 and 200 mm to .vdb
+    volume  CPU and memory of 1 mm cells, eight voxels each, in cubes of 100 and 200 mm to .vdb
 """
 import argparse
 import os
@@ -25,7 +25,7 @@ from models import box, write_stl  # noqa: E402
 
 GOALS = {"slicer": 5, "height": 1.1, "cube": 150e6, "vdb": 2e9, "linear": 10}
 DENSITY = 35
-BARE = ["--perimeters", "0", "--top-solid-layers", "0", "--bottom-solid-layers", "0", "--skirts", "0"]
+JOB = ["--layer-height", "0.2", "--first-layer-height", "0.2", "--perimeters", "2", "--skirts", "0"]
 verdicts = []
 
 
@@ -77,7 +77,7 @@ def filament(path):
 def slicer(program, folder):
     part, out = cube(folder, "cube", 100, 100, 100), str(folder / "out.gcode")
     ours = min(measured([program, part, "-o", out, "--fill-pattern", "gyroid_sheet", "--lattice-cell", "4",
-                         "--fill-density", f"{DENSITY}%", *BARE, "--quiet"])[0] for _ in range(3))
+                         "--fill-density", f"{DENSITY}%", *JOB, "--quiet"])[0] for _ in range(3))
     length = filament(out)
     print(f"  isoslice: {ours:.2f} s, {length / 1000:.1f} m, {os.path.getsize(out) >> 20} MiB")
     other = shutil.which("prusa-slicer")
@@ -87,7 +87,7 @@ def slicer(program, folder):
 
     def theirs(density):
         seconds, _ = measured([other, "--export-gcode", "--fill-pattern", "gyroid", "--fill-density",
-                               f"{density:.2f}%", *BARE,
+                               f"{density:.2f}%", *JOB,
                                "-o", out, part])
         used = filament(out)
         print(f"  PrusaSlicer, {density:.1f} %: {seconds:.2f} s, {used / 1000:.1f} m, "
@@ -123,7 +123,8 @@ def volume(program, folder):
     for edge in (100, 200):
         out = str(folder / "out.vdb")
         seconds[edge], used = measured([program, "lattice", cube(folder, "cube", edge, edge, edge), "-o", out,
-                                        "--lattice-cell", "1", "--quiet"])
+                                        "--lattice-cell", "1", "--fill-density", "50%", "--voxel", "0.125",
+                                        "--quiet"])
         print(f"  {edge} mm cube, 1 mm cells: {seconds[edge]:.1f} s, {used / 1e6:.0f} MB, "
               f"{os.path.getsize(out) / 1e6:.0f} MB of .vdb", flush=True)
         verdict("memory", f"{used / 1e6:.0f} MB", f"{GOALS['vdb'] / 1e6:.0f} MB", used < GOALS["vdb"])
