@@ -449,19 +449,25 @@ void lattice_sample_row(double *distance, double *half, const iso_lattice *latti
         cut_row(distance, half, lattice, at, plane, first, count);
 }
 
+/* Points as the part's frame has them, and all else that is asked of them. */
+static void place_points(iso_places *places, const iso_lattice *lattice, const iso_vec3 *point,
+                         int32_t count) {
+    iso_vec3 origin = lattice->space.origin;
+    for (int32_t i = 0; i < count; i++) {
+        places->value[GRADING_X][i] = point[i].x - origin.x;
+        places->value[GRADING_Y][i] = point[i].y - origin.y;
+        places->value[GRADING_Z][i] = point[i].z - origin.z;
+    }
+    space_know(places, &lattice->space, lattice->wanted, count);
+}
+
 void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *point,
                     int64_t count) {
-    iso_vec3 origin = lattice->space.origin;
     double distance[GRADING_BLOCK], half[GRADING_BLOCK], unit[GRADING_BLOCK];
     for (int64_t done = 0, n; done < count; done += n) {
         iso_places places;
         n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
-        for (int64_t i = 0; i < n; i++) {
-            places.value[GRADING_X][i] = point[done + i].x - origin.x;
-            places.value[GRADING_Y][i] = point[done + i].y - origin.y;
-            places.value[GRADING_Z][i] = point[done + i].z - origin.z;
-        }
-        space_know(&places, &lattice->space, lattice->wanted, (int32_t)n);
+        place_points(&places, lattice, point + done, (int32_t)n);
         measure(distance, unit, lattice, &places, (int32_t)n);
         find_halves(half, unit, lattice, &places, (int32_t)n);
         for (int64_t i = 0; i < n; i++)
@@ -477,18 +483,12 @@ void lattice_sample(double *value, const iso_lattice *lattice, const iso_vec3 *p
 
 void lattice_tools(uint8_t *tool, const iso_lattice *lattice, const iso_vec3 *point,
                    int64_t count) {
-    iso_vec3 origin = lattice->space.origin;
     iso_cell_places cells;
     double size[GRADING_BLOCK];
     for (int64_t done = 0, n; done < count; done += n) {
         iso_places places;
         n = count - done < GRADING_BLOCK ? count - done : GRADING_BLOCK;
-        for (int64_t i = 0; i < n; i++) {
-            places.value[GRADING_X][i] = point[done + i].x - origin.x;
-            places.value[GRADING_Y][i] = point[done + i].y - origin.y;
-            places.value[GRADING_Z][i] = point[done + i].z - origin.z;
-        }
-        space_know(&places, &lattice->space, lattice->wanted, (int32_t)n);
+        place_points(&places, lattice, point + done, (int32_t)n);
         grading_evaluate(size, &lattice->size, places.variable, n);
         map_cells(cells, &lattice->map, &places, size, (int32_t)n);
         for (int64_t i = 0; i < n; i++)
