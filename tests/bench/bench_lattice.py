@@ -12,16 +12,16 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "cli"))
 sys.dont_write_bytecode = True
 
 from models import box, write_stl  # noqa: E402
+
+from bench_stream import spend  # noqa: E402
 
 GOALS = {"slicer": 5, "height": 1.1, "cube": 150e6, "vdb": 2e9, "linear": 10}
 DENSITY = 35
@@ -40,31 +40,12 @@ def cube(folder, name, x, y, z):
     return path
 
 
-def memory_of(process):
-    """Bytes at most so far. Of ru_maxrss a part is this program's own, from before the exec()."""
-    try:
-        text = pathlib.Path(f"/proc/{process}/status").read_text()
-        return int(re.search(r"VmHWM:\s+(\d+)", text)[1]) * 1024
-    except (OSError, TypeError):
-        return 0
-
-
 def measured(command):
     """CPU seconds and bytes; what fails ends it all."""
-    memory = 0
-    with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT)
-        while True:
-            done, status, usage = os.wait4(process.pid, os.WNOHANG)
-            if done:
-                break
-            memory = max(memory, memory_of(process.pid))
-            time.sleep(0.005)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        said.seek(max(0, said.seek(0, 2) - 400))
-        if process.returncode != 0:
-            sys.exit(f"{command[0]}: exit {process.returncode}: {said.read().decode(errors='replace')}")
-    return usage.ru_utime + usage.ru_stime, memory
+    code, said, seconds, memory = spend(command)
+    if code != 0:
+        sys.exit(f"{command[0]}: exit {code}: {said[-400:]}")
+    return seconds, memory
 
 
 def filament(path):

@@ -173,21 +173,6 @@ static void test_clump(void) {
     shape_free(&whole);
 }
 
-static shape moebius(int n) {
-    shape s = {0};
-    for (int i = 0; i < n; i++) {
-        shape_point p[2][2];
-        for (int k = 0; k < 4; k++) {
-            double u = 2 * SHAPE_PI * ((i + k / 2) % n) / n;
-            double across = (k % 2 ? 4 : -4) * (i + k / 2 == n ? -1 : 1);
-            double far = 18 + across * cos(u / 2);
-            p[k / 2][k % 2] = (shape_point){far * cos(u), far * sin(u), across * sin(u / 2)};
-        }
-        shape_quad(&s, p[0][0], p[1][0], p[1][1], p[0][1]);
-    }
-    return s;
-}
-
 /* From corner `from` / 3 to the next one. */
 static double edge_length(const float *corner, int from) {
     double sum = 0;
@@ -199,7 +184,8 @@ static double edge_length(const float *corner, int from) {
 }
 
 static void test_moebius_strip(void) {
-    shape s = moebius(180);
+    shape s = {0};
+    shape_moebius(&s, 18, 4, 180);
     print p;
     refused(&s, "", "one side only");
     refused(&s, "", "sheet-thickness");

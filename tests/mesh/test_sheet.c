@@ -144,21 +144,6 @@ static void test_hemisphere(void) {
     shape_free(&s);
 }
 
-static shape moebius(int n) {
-    shape s = {0};
-    for (int i = 0; i < n; i++) {
-        shape_point p[2][2];
-        for (int k = 0; k < 4; k++) {
-            double u = 2 * SHAPE_PI * ((i + k / 2) % n) / n;
-            double across = (k % 2 ? 3 : -3) * (i + k / 2 == n ? -1 : 1);
-            double far = 20 + across * cos(u / 2);
-            p[k / 2][k % 2] = (shape_point){far * cos(u), far * sin(u), across * sin(u / 2)};
-        }
-        shape_quad(&s, p[0][0], p[1][0], p[1][1], p[0][1]);
-    }
-    return s;
-}
-
 static double area_of(const shape *s) {
     double sum = 0;
     for (int64_t t = 0; t < s->count; t++) {
@@ -175,7 +160,8 @@ static double area_of(const shape *s) {
 
 /* One side, one rim: its cover is a torus with a twist. */
 static void test_moebius_strip(void) {
-    shape s = moebius(120);
+    shape s = {0};
+    shape_moebius(&s, 20, 3, 120);
     iso_mesh mesh;
     double wanted = area_of(&s) * 1.5;
     if (thicken(&mesh, &s, 1.5, wanted, 1e-3 * wanted)) {
@@ -295,7 +281,8 @@ static void test_random_soups(void) {
 }
 
 static void test_no_memory(void) {
-    shape s = moebius(12);
+    shape s = {0};
+    shape_moebius(&s, 20, 3, 12);
     shape_box(&s, 40, 0, 0, 50, 10, 10);
     shape_remove(&s, 30);
     iso_mesh_options options = {.sheet_thickness = 1};

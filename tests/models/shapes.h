@@ -226,4 +226,18 @@ static inline int shape_write_binary(const shape *s, const char *path) {
     return written;
 }
 
+/* A strip with half a turn in it, of n squares, about the z axis; `half` of its width. One side. */
+static inline void shape_moebius(shape *s, double radius, double half, int n) {
+    for (int i = 0; i < n; i++) {
+        shape_point p[2][2];
+        for (int k = 0; k < 4; k++) {
+            double u = 2 * SHAPE_PI * ((i + k / 2) % n) / n;
+            double across = (k % 2 ? half : -half) * (i + k / 2 == n ? -1 : 1);
+            double far = radius + across * cos(u / 2);
+            p[k / 2][k % 2] = (shape_point){far * cos(u), far * sin(u), across * sin(u / 2)};
+        }
+        shape_quad(s, p[0][0], p[1][0], p[1][1], p[0][1]);
+    }
+}
+
 #endif

@@ -28,6 +28,7 @@ import numpy
 
 import nasty
 
+LATTICE = re.compile(r"_(sheet|solid|struts|cubic|random|file)\b")
 REFUSALS = {4, 5, 6}  # not sliceable, beyond the printer, options at odds
 HOME = "G28\\nG1 Z5 F1200"
 
@@ -359,7 +360,7 @@ class Trace:
         flow, bridge = float(s["extrusion_multiplier"]), float(s["bridge_flow_ratio"])
         even = letter == "E" and flavour in MARLINS
         # Beads of lattices tell their width as it was up to a fifth ago: not each has to tell its own.
-        untold = 1.25 if "_" in s["fill_pattern"] + s["modifiers"] else 1.06
+        untold = 1.25 if LATTICE.search(s["fill_pattern"] + " " + s["modifiers"]) else 1.06
         for count, line in enumerate(text.splitlines(), 1):
             if line.startswith(";"):
                 if line.startswith(";TYPE:"):
