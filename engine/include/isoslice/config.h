@@ -92,21 +92,23 @@ typedef enum iso_option_kind {
     ISO_VALUE_POINTS,   /* iso_points */
     ISO_VALUE_NUMBERS,  /* iso_numbers */
     /* words of a list, each an int32_t of the enum */
-    ISO_VALUE_PATTERN, /* iso_fill_pattern */
-    ISO_VALUE_FLAVOUR, /* iso_flavour */
-    ISO_VALUE_SEAM,    /* iso_seam */
-    ISO_VALUE_BRIM,    /* iso_brim_type */
-    ISO_VALUE_SHIELD,  /* iso_draft_shield */
-    ISO_VALUE_FUZZY,   /* iso_fuzzy_skin */
-    ISO_VALUE_IRONING, /* iso_ironing_type */
-    ISO_VALUE_LIMITS,  /* iso_limits_usage */
-    ISO_VALUE_LABELS,  /* iso_label_style */
-    ISO_VALUE_ARCS,    /* iso_arc_fitting */
-    ISO_VALUE_CUT,     /* iso_cut_keep */
-    ISO_VALUE_MIRROR,  /* iso_mirror */
-    ISO_VALUE_MAP,     /* iso_lattice_map */
-    ISO_VALUE_CHECK,   /* iso_check_solid */
-    ISO_VALUE_REPAIR   /* iso_repair */
+    ISO_VALUE_PATTERN,    /* iso_fill_pattern */
+    ISO_VALUE_FLAVOUR,    /* iso_flavour */
+    ISO_VALUE_SEAM,       /* iso_seam */
+    ISO_VALUE_BRIM,       /* iso_brim_type */
+    ISO_VALUE_SHIELD,     /* iso_draft_shield */
+    ISO_VALUE_FUZZY,      /* iso_fuzzy_skin */
+    ISO_VALUE_IRONING,    /* iso_ironing_type */
+    ISO_VALUE_LIMITS,     /* iso_limits_usage */
+    ISO_VALUE_LABELS,     /* iso_label_style */
+    ISO_VALUE_ARCS,       /* iso_arc_fitting */
+    ISO_VALUE_CUT,        /* iso_cut_keep */
+    ISO_VALUE_MIRROR,     /* iso_mirror */
+    ISO_VALUE_MAP,        /* iso_lattice_map */
+    ISO_VALUE_CHECK,      /* iso_check_solid */
+    ISO_VALUE_REPAIR,     /* iso_repair */
+    ISO_VALUE_KINEMATICS, /* iso_kinematics */
+    ISO_VALUE_FEED        /* iso_feed_mode */
 } iso_option_kind;
 
 static inline bool iso_option_is_word(iso_option_kind kind) {
@@ -144,6 +146,8 @@ typedef struct iso_options {
 #define ISO_FIELD_MAP(key) int32_t key;
 #define ISO_FIELD_CHECK(key) int32_t key;
 #define ISO_FIELD_REPAIR(key) int32_t key;
+#define ISO_FIELD_KINEMATICS(key) int32_t key;
+#define ISO_FIELD_FEED(key) int32_t key;
 #define ISO_FIELD_TEXT(key) char key[ISO_TEXT_SIZE];
 #define ISO_FIELD_PLACE(key) iso_place key;
 #define ISO_FIELD_POINTS(key) iso_points key;

@@ -27,6 +27,20 @@ typedef enum iso_flavour {
  */
 ISO_API iso_status iso_flavour_from_name(iso_flavour *flavour, const char *name) ISO_MUST_CHECK;
 
+typedef enum iso_kinematics {
+    ISO_KINEMATICS_CARTESIAN,
+    ISO_KINEMATICS_ROTARY_A, /* a mandrel along X */
+    ISO_KINEMATICS_ROTARY_B, /* along Y */
+    ISO_KINEMATICS_TABLE_AC, /* a table that tilts around X, and turns */
+    ISO_KINEMATICS_TABLE_BC  /* around Y, and turns */
+} iso_kinematics;
+
+typedef enum iso_feed_mode {
+    ISO_FEED_COMPENSATED, /* F such that the nozzle moves over the part as fast as it is to, for a
+                           * machine whose F counts X, Y and Z alone */
+    ISO_FEED_INVERSE_TIME /* G93: F is one over the minutes of each move */
+} iso_feed_mode;
+
 /* Texts of the user's, by where they stand. */
 typedef enum iso_gcode_text_kind {
     ISO_TEXT_START,           /* before the print; asked for if start_gcode is NULL */

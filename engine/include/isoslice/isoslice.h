@@ -3,6 +3,7 @@
 #define ISOSLICE_ISOSLICE_H
 
 #include <isoslice/config.h>
+#include <isoslice/field.h>
 #include <isoslice/fill.h>
 #include <isoslice/gcode.h>
 #include <isoslice/geometry.h>

@@ -60,6 +60,13 @@ typedef struct iso_path {
     int32_t travel_first, travel_count; /* points of `travel` to pass on the way */
 } iso_path;
 
+/* How a bead lies where layers aren't flat, at a vertex; or the nozzle, at a point of a travel. */
+typedef struct iso_frame {
+    iso_vec3 normal; /* unit: across the layer, which the tool points against */
+    int32_t height;  /* units: the layer's thickness here */
+    int32_t z;       /* units above the layer's nominal top: of a travel; a vertex has its own */
+} iso_frame;
+
 /* The paths of one layer. Zero-initialise; keeps its capacity; iso_paths_free at the end. */
 typedef struct iso_paths {
     int32_t count, vertex_count;
@@ -69,6 +76,9 @@ typedef struct iso_paths {
     int32_t travel_count; /* points that travels turn at */
     iso_point *travel;
     int64_t travel_capacity;
+    iso_frame *frame;        /* [vertex_count]; NULL: the layer is flat */
+    iso_frame *travel_frame; /* [travel_count], with `frame` */
+    int64_t frame_capacity, travel_frame_capacity;
 } iso_paths;
 
 ISO_API void iso_paths_free(iso_paths *paths);

@@ -7,6 +7,7 @@
 #ifndef ISOSLICE_SLICE_H
 #define ISOSLICE_SLICE_H
 
+#include <isoslice/field.h>
 #include <isoslice/geometry.h>
 #include <isoslice/mesh.h>
 #include <isoslice/status.h>
@@ -63,6 +64,38 @@ ISO_API iso_status iso_slice_planar(iso_slices *slices, const iso_mesh *mesh,
  * those of the next. Of coinciding material it has both outlines. `joined` owns its arrays. */
 ISO_API iso_status iso_slices_join(iso_slices *joined, const iso_slices *slices,
                                    int32_t count) ISO_MUST_CHECK;
+/* ---- by any field ---- */
+
+/* Contours in space: a coloured link as iso_slices is, with its points where they are. */
+typedef struct iso_curves {
+    int32_t level_count;
+    int32_t contour_count;
+    int64_t crossing_count;
+    int32_t *level_first;   /* [level_count + 1] contours of each level */
+    int64_t *contour_first; /* [contour_count + 1] crossings of each contour */
+    iso_vec3 *point;        /* [crossing_count] mm */
+} iso_curves;
+
+typedef struct iso_field_slicing {
+    double tolerance;  /* mm that a chord may be off the curve it stands for; 0: any distance */
+    double resolution; /* mm: shorter edges aren't split any more, whatever may lie between */
+} iso_field_slicing;
+ISO_API iso_field_slicing iso_field_slicing_defaults(void); /* 0.01, 0.002 */
+
+/* Cut a mesh by F = level[i], ascending strictly. Faces are split, edge by edge so that neighbours
+ * agree, until F is unimodal on them, or misses every level, for certain: loops inside one triangle
+ * are found too. Points lie on the mesh, and on the level within 1 um (as far as the gradient
+ * allows). Every contour of a closed mesh closes; seen against the gradient material is on the
+ * left. ISO_UNSLICEABLE: F has no value at some point of the mesh, which the message names. */
+ISO_API iso_status iso_slice_field(iso_curves *curves, const iso_mesh *mesh, const iso_field *field,
+                                   const double *level, int32_t level_count,
+                                   const iso_field_slicing *options) ISO_MUST_CHECK;
+
+/* Cut by heights given at the vertices ([vertex_count]), linear between them. */
+ISO_API iso_status iso_slice_heights(iso_curves *curves, const iso_mesh *mesh, const double *height,
+                                     const double *level, int32_t level_count) ISO_MUST_CHECK;
+ISO_API void iso_curves_free(iso_curves *curves);
+
 ISO_API void iso_slices_free(iso_slices *slices);
 ISO_API iso_status iso_slices_validate(const iso_slices *slices) ISO_MUST_CHECK;
 

@@ -109,6 +109,13 @@ ISO_WORD(CHECK, ISO_CHECK_AUTO, "auto")
 ISO_WORD(CHECK, ISO_CHECK_FULL, "full")
 ISO_WORD(REPAIR, ISO_REPAIR_MEND, "mend")
 ISO_WORD(REPAIR, ISO_REPAIR_VOLUME, "volume")
+ISO_WORD(KINEMATICS, ISO_KINEMATICS_CARTESIAN, "cartesian")
+ISO_WORD(KINEMATICS, ISO_KINEMATICS_ROTARY_A, "rotary_a")
+ISO_WORD(KINEMATICS, ISO_KINEMATICS_ROTARY_B, "rotary_b")
+ISO_WORD(KINEMATICS, ISO_KINEMATICS_TABLE_AC, "table_ac")
+ISO_WORD(KINEMATICS, ISO_KINEMATICS_TABLE_BC, "table_bc")
+ISO_WORD(FEED, ISO_FEED_COMPENSATED, "compensated")
+ISO_WORD(FEED, ISO_FEED_INVERSE_TIME, "inverse_time")
 #endif
 
 #ifdef ISO_OPTION
@@ -179,6 +186,57 @@ ISO_OPTION(cusp_height, NUMBER, "0.05", "mm", 0.001, 1, "Layers",
 ISO_OPTION(min_layer_height, NUMBER, "0.07", "mm", 0.01, 5, "Layers", "Thinnest adaptive layer.")
 ISO_OPTION(max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
            "Thickest adaptive layer; 0 takes 75% of nozzle_diameter.")
+
+ISO_OPTION(
+    field, TEXT, "", "", 0, 0, "Curved layers",
+    "Height function whose level surfaces are the layers: plane:, cone:, sphere:, cylinder:, torus:, wave:, fan: or distance: with their numbers, auto-top, or an expression in x, y (from the part's middle) and z. Empty or z: flat layers.")
+ISO_OPTION(field_base, NUMBER, "0", "mm", 0, 10000, "Curved layers",
+           "Height up to which layers stay flat under curved ones.")
+ISO_OPTION(
+    field_blend, NUMBER, "0", "mm", 0, 10000, "Curved layers",
+    "Height over which flat layers bend into curved ones, above field_base; 0: there is no flat base.")
+ISO_OPTION(
+    field_slope, NUMBER, "40", "deg", 0, 89, "Curved layers",
+    "Steepest that a layer may lie where the nozzle always points down; steeper ones are refused. Layers of auto-top keep to it.")
+ISO_OPTION(field_tolerance, NUMBER, "0.01", "mm", 0.001, 1, "Curved layers",
+           "How far lines may be off the curved layer they stand for.")
+ISO_OPTION(
+    check_clearance, BOOL, "1", "", 0, 1, "Curved layers",
+    "Refuse a print with curved layers in which the tool would touch what is printed already.")
+ISO_OPTION(clearance_tip, NUMBER, "0.8", "mm", 0.05, 10, "Curved layers",
+           "Diameter of the nozzle's flat tip.")
+ISO_OPTION(clearance_cone, NUMBER, "45", "deg", 1, 89, "Curved layers",
+           "Angle between the nozzle's side and its axis.")
+ISO_OPTION(clearance_cone_height, NUMBER, "6", "mm", 0.1, 1000, "Curved layers",
+           "Height above the tip at which the heater block begins.")
+ISO_OPTION(
+    clearance_block, POINTS, "-10x-10,10x10", "mm", -1000, 1000, "Curved layers",
+    "Two corners of the heater block around the nozzle, seen from above; empty: there is none.")
+ISO_OPTION(clearance_carriage_height, NUMBER, "20", "mm", 0.1, 1000, "Curved layers",
+           "Height above the tip at which the carriage begins.")
+ISO_OPTION(
+    clearance_carriage, POINTS, "-30x-30,30x30", "mm", -1000, 1000, "Curved layers",
+    "Two corners of the carriage around the nozzle, seen from above; empty: there is none.")
+ISO_OPTION(
+    clearance_gantry_height, NUMBER, "40", "mm", 0, 10000, "Curved layers",
+    "Height above the tip at which the machine begins, wherever the nozzle is; 0: nothing is in the way.")
+ISO_OPTION(
+    kinematics, KINEMATICS, "cartesian", "", 0, 0, "Curved layers",
+    "How the machine turns the part: cartesian (not at all), rotary_a or rotary_b (a mandrel along X or Y), table_ac or table_bc (a table that tilts around X or Y and turns). The tool then stands square on the layer.")
+ISO_OPTION(
+    kinematics_pivot, NUMBERS, "", "mm", -10000, 10000, "Curved layers",
+    "X,Y,Z on the bed that a table tilts and turns about, or a point of the mandrel's axis. Empty: the middle of the bed, at Z = 0.")
+ISO_OPTION(tilt_limits, NUMBERS, "-90,90", "deg", -360, 360, "Curved layers",
+           "How far a table may tilt: least,greatest.")
+ISO_OPTION(turn_limits, NUMBERS, "-360000,360000", "deg", -1000000, 1000000, "Curved layers",
+           "How far a table or mandrel may turn in all: least,greatest.")
+ISO_OPTION(tilt_speed, NUMBER, "60", "deg/s", 0.01, 10000, "Curved layers",
+           "Fastest that a table tilts.")
+ISO_OPTION(turn_speed, NUMBER, "180", "deg/s", 0.01, 10000, "Curved layers",
+           "Fastest that a table or mandrel turns.")
+ISO_OPTION(
+    rotary_feed, FEED, "compensated", "", 0, 0, "Curved layers",
+    "How speed is told where the part turns: compensated (F counts X, Y, Z alone) or inverse_time (G93).")
 ISO_OPTION(
     gcode_resolution, NUMBER, "0.0125", "mm", 0, 1, "Layers",
     "How far a printed path may lie from the exact one, to leave out needless points; 0 keeps all.")
