@@ -190,11 +190,14 @@ ISO_OPTION(max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
 ISO_OPTION(
     field, TEXT, "", "", 0, 0, "Curved layers",
     "Height function whose level surfaces are the layers: plane:, cone:, sphere:, cylinder:, torus:, wave:, fan: or distance: with their numbers, auto-top, or an expression in x, y (from the part's middle) and z. Empty or z: flat layers.")
+ISO_OPTION(
+    field_flat_base, BOOL, "1", "", 0, 1, "Curved layers",
+    "Layers begin flat on the bed and bend into curved ones; off: they are curved from the start, as they always are where the machine turns the part.")
 ISO_OPTION(field_base, NUMBER, "0", "mm", 0, 10000, "Curved layers",
-           "Height up to which layers stay flat under curved ones.")
+           "Height up to which layers stay flat before they begin to bend.")
 ISO_OPTION(
     field_blend, NUMBER, "0", "mm", 0, 10000, "Curved layers",
-    "Height over which flat layers bend into curved ones, above field_base; 0: there is no flat base.")
+    "Height over which flat layers bend into curved ones; 0: five times as much as they bend, so that none gets a third thinner or thicker.")
 ISO_OPTION(
     field_slope, NUMBER, "40", "deg", 0, 89, "Curved layers",
     "Steepest that a layer may lie where the nozzle always points down; steeper ones are refused. Layers of auto-top keep to it.")
