@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "config/settings_machine.h"
 #include "config/settings_objects.h"
 #include "config/value.h"
 
@@ -169,6 +170,7 @@ iso_status iso_options_check(const iso_options *options) {
         return iso_fail(ISO_BAD_CONFIG, "min_fan_speed = %d is above max_fan_speed = %d",
                         options->min_fan_speed, options->max_fan_speed);
     ISO_TRY(settings_check_objects(options));
+    ISO_TRY(settings_check_machine(options));
     if (options->adaptive_layers)
         ISO_TRY(check_layer(options, "max_layer_height", settings_of_adaptive(options).max, false));
     ISO_TRY(check_vase(options));

@@ -8,6 +8,7 @@
 #include <isoslice/wall.h>
 
 #include "config/texts.h"
+#include "pose/pose.h"
 #include "lattice/drain.h"
 
 #include "path/order.h"
@@ -68,5 +69,9 @@ iso_order_options settings_of_order(const iso_options *options);
  * and the end. */
 iso_gcode_options settings_of_gcode(const iso_options *options, const iso_texts *texts,
                                     int64_t timestamp);
+
+/* How the machine turns the part. ISO_BAD_CONFIG: a list of its options has too few numbers, or too
+ * many. */
+iso_status settings_of_machine(pose_machine *machine, const iso_options *options) ISO_MUST_CHECK;
 
 #endif
