@@ -96,6 +96,21 @@ typedef struct iso_machine_limits {
     double junction_deviation;                    /* mm */
 } iso_machine_limits;
 
+/* A move as it is written: where the tip of the nozzle goes, whichever axes bring it there. Places
+ * are the part's, as it stands on the bed with all angles 0, z_offset left out, and rounded as the
+ * file has them. A move that turns the part a lot is told in pieces. */
+typedef struct iso_gcode_move {
+    iso_vec3 from, to;               /* mm */
+    iso_vec3 from_normal, to_normal; /* unit: where the tool comes from; up unless the part turns */
+    double width, height;            /* mm of the bead it leaves; 0: a travel */
+} iso_gcode_move;
+
+/* Told of every move, in order, from the first place that is known; not of those that the user's
+ * texts make. A failure ends the job. */
+typedef iso_status iso_gcode_watch(void *payload, const iso_gcode_move *move);
+
+struct pose_machine; /* pose/pose.h */
+
 /* Lengths in mm, speeds in mm/s, accelerations in mm/s^2, temperatures in degrees Celsius, fan
  * speeds in percent, times in s. Names and meaning are PrusaSlicer's where it has them. Texts
  * belong to the caller and must outlive the writer; NULL is "". */
@@ -158,6 +173,11 @@ typedef struct iso_gcode_options {
     const char *events;
     const double *colorprint_height; /* [colorprint_count] mm */
     int32_t colorprint_count;
+
+    const struct pose_machine *machine; /* must outlive the writer; NULL: the part never turns */
+    iso_feed_mode rotary_feed;          /* of a machine that turns it */
+    iso_gcode_watch *watch;             /* or NULL */
+    void *watch_payload;
 
     const char *start_gcode, *end_gcode;
     iso_gcode_text *text; /* of all other texts; or NULL: there are none */

@@ -113,6 +113,7 @@ static void set_machine(iso_gcode_options *g, const iso_options *options) {
     g->bed_temperature = options->bed_temperature;
     g->first_layer_bed_temperature = options->first_layer_bed_temperature;
     g->z_offset = options->z_offset;
+    g->rotary_feed = (iso_feed_mode)options->rotary_feed;
 }
 
 static void set_filament(iso_gcode_options *g, const iso_options *options) {
@@ -158,4 +159,41 @@ iso_gcode_options settings_of_gcode(const iso_options *options, const iso_texts 
     g.generator = "isoslice " ISO_VERSION;
     g.timestamp = timestamp;
     return g;
+}
+
+/* ---- turning the part ---- */
+
+static iso_vec3 bed_middle(const iso_points *bed) {
+    iso_vec2 low = bed->point[0], high = low;
+    for (int32_t i = 1; i < bed->count; i++) {
+        iso_vec2 p = bed->point[i];
+        low = (iso_vec2){p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y};
+        high = (iso_vec2){p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y};
+    }
+    return (iso_vec3){(low.x + high.x) / 2, (low.y + high.y) / 2, 0};
+}
+
+static iso_status set_range(pose_machine *machine, int axis, const iso_numbers *limits,
+                            const char *key) {
+    if (limits->count != 2 || !(limits->value[0] < limits->value[1]))
+        return iso_fail(ISO_BAD_CONFIG, "%s: give the least and the greatest angle, as -90,90",
+                        key);
+    machine->low[axis] = limits->value[0];
+    machine->high[axis] = limits->value[1];
+    return ISO_OK;
+}
+
+iso_status settings_of_machine(pose_machine *machine, const iso_options *options) {
+    const iso_numbers *pivot = &options->kinematics_pivot;
+    pose_machine m = {.kinematics = (iso_kinematics)options->kinematics,
+                      .fastest = {options->tilt_speed, options->turn_speed}};
+    if (pivot->count != 0 && pivot->count != 3)
+        return iso_fail(ISO_BAD_CONFIG, "kinematics_pivot: give X,Y,Z, three numbers; there are %d",
+                        pivot->count);
+    m.pivot = pivot->count == 3 ? (iso_vec3){pivot->value[0], pivot->value[1], pivot->value[2]}
+                                : bed_middle(&options->bed_shape);
+    ISO_TRY(set_range(&m, 0, &options->tilt_limits, "tilt_limits"));
+    ISO_TRY(set_range(&m, 1, &options->turn_limits, "turn_limits"));
+    *machine = m;
+    return ISO_OK;
 }

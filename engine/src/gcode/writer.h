@@ -16,6 +16,7 @@
 #include <isoslice/path.h>
 
 #include "base/output.h"
+#include "pose/pose.h"
 
 typedef struct iso_gcode_writer iso_gcode_writer;
 
@@ -24,7 +25,9 @@ typedef struct iso_gcode_layer_info {
     int32_t z, height;      /* units: its top, z_offset included, and how high it is */
     const iso_paths *paths; /* in printing order (iso_order_layer) */
     const iso_arc *arc;     /* [arc_count] of them (iso_paths_find_arcs) */
-    int32_t arc_count;
+    int32_t arc_count;      /* 0 where layers aren't flat */
+    const iso_pose *pose;   /* [vertices] by pose_paths; NULL unless the machine turns the part */
+    const iso_pose *travel_pose; /* [travels] */
 } iso_gcode_layer_info;
 
 /* Writes the lines of the config block, each "; key = value\n". */
