@@ -23,6 +23,8 @@ static const description modules[ISO_MODULE_COUNT] = {
     [ISO_MODULE_VOLUME] = {"isoslice-volume.so", MODULE_VERSION_VOLUME,
                            "libopenvdb10.0 and libpng16-16",
                            "libopenvdb-dev, libboost-dev, libtbb-dev and libpng-dev"},
+    [ISO_MODULE_SPARSE] = {"isoslice-sparse.so", MODULE_VERSION_SPARSE, "libcxsparse3",
+                           "libsuitesparse-dev"},
 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;

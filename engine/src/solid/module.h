@@ -1,9 +1,11 @@
 /* Heavy libraries are modules, opened on first use and never closed: isoslice-solid.so has Embree,
- * isoslice-volume.so has OpenVDB and libpng. Each exports one table of functions with a version.
- * They are looked for in the folder that ISOSLICE_MODULES names, then beside the library or program
- * that this code is in, then in ../lib/isoslice and the folder they were to be installed to.
+ * isoslice-volume.so has OpenVDB and libpng, isoslice-sparse.so CXSparse. Each exports one table of
+ * functions with a version. They are looked for in the folder that ISOSLICE_MODULES names, then
+ * beside the library or program that this code is in, then in ../lib/isoslice and the folder they
+ * were to be installed to.
  *
- * A module is one file *_shim.cpp that includes this header and the one of its table, and ends with
+ * A module is one file, *_shim.cpp where the library is C++, that includes this header and the one
+ * of its table, and ends with
  *
  *     MODULE_TABLE const volume_table isoslice_module = {{MODULE_VERSION_VOLUME}, f, g};
  *
@@ -16,10 +18,15 @@
 
 #include <isoslice/status.h>
 
-typedef enum iso_module { ISO_MODULE_SOLID, ISO_MODULE_VOLUME, ISO_MODULE_COUNT } iso_module;
+typedef enum iso_module {
+    ISO_MODULE_SOLID,
+    ISO_MODULE_VOLUME,
+    ISO_MODULE_SPARSE,
+    ISO_MODULE_COUNT
+} iso_module;
 
 /* Raise by one with every change of a table. */
-enum { MODULE_VERSION_SOLID = 1, MODULE_VERSION_VOLUME = 1 };
+enum { MODULE_VERSION_SOLID = 1, MODULE_VERSION_VOLUME = 1, MODULE_VERSION_SPARSE = 1 };
 
 /* First in every table. */
 typedef struct module_header {
