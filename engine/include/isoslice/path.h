@@ -63,7 +63,7 @@ typedef struct iso_path {
 /* How a bead lies where layers aren't flat, at a vertex; or the nozzle, at a point of a travel. */
 typedef struct iso_frame {
     iso_vec3 normal; /* unit: across the layer, which the tool points against */
-    int32_t height;  /* units: the layer's thickness here */
+    int32_t height;  /* units: the layer's thickness here; 0: the layer is flat here */
     int32_t z;       /* units above the layer's nominal top: of a travel; a vertex has its own */
 } iso_frame;
 
@@ -76,7 +76,7 @@ typedef struct iso_paths {
     int32_t travel_count; /* points that travels turn at */
     iso_point *travel;
     int64_t travel_capacity;
-    iso_frame *frame;        /* [vertex_count]; NULL: the layer is flat */
+    iso_frame *frame;        /* [vertex_count]; NULL: the layer is flat; iso_paths_clear frees it */
     iso_frame *travel_frame; /* [travel_count], with `frame` */
     int64_t frame_capacity, travel_frame_capacity;
 } iso_paths;

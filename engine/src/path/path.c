@@ -1,5 +1,7 @@
 #include <isoslice/path.h>
 
+#include <stdbool.h>
+
 #include "base/memory.h"
 
 static const double pi = 3.14159265358979323846;
@@ -27,15 +29,46 @@ void iso_paths_free(iso_paths *paths) {
     iso_release(paths->path);
     iso_release(paths->vertex);
     iso_release(paths->travel);
+    iso_release(paths->frame);
+    iso_release(paths->travel_frame);
     *paths = (iso_paths){0};
 }
 
+/* Frames go, since having them is what makes a layer a curved one. */
 void iso_paths_clear(iso_paths *paths) {
+    iso_release(paths->frame);
+    iso_release(paths->travel_frame);
+    paths->frame = paths->travel_frame = NULL;
+    paths->frame_capacity = paths->travel_frame_capacity = 0;
     paths->count = paths->vertex_count = paths->travel_count = 0;
 }
 
 static iso_status too_many(void) {
     return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
+}
+
+static void lie_flat(iso_frame *frame, int64_t from, int64_t to) {
+    for (int64_t i = from; i < to; i++)
+        frame[i] = (iso_frame){.normal = {0, 0, 1}};
+}
+
+/* Frames for so many vertices and points of travels in all: those that are there become curved if
+ * they weren't. On failure the paths are as they were, but for room. */
+static iso_status make_frames(iso_paths *paths, int64_t vertices, int64_t travels) {
+    bool flat = !paths->frame;
+    iso_status status = ISO_GROW(paths->frame, paths->frame_capacity, vertices + 1);
+    if (status == ISO_OK)
+        status = ISO_GROW(paths->travel_frame, paths->travel_frame_capacity, travels + 1);
+    if (status != ISO_OK && flat) {
+        iso_release(paths->frame);
+        paths->frame = NULL;
+        paths->frame_capacity = 0;
+    }
+    if (status == ISO_OK && flat) {
+        lie_flat(paths->frame, 0, paths->vertex_count);
+        lie_flat(paths->travel_frame, 0, paths->travel_count);
+    }
+    return status;
 }
 
 iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point *point,
@@ -45,6 +78,10 @@ iso_status iso_paths_add(iso_paths *paths, const iso_path *like, const iso_point
         return too_many();
     ISO_TRY(ISO_GROW(paths->path, paths->path_capacity, (int64_t)paths->count + 1));
     ISO_TRY(ISO_GROW(paths->vertex, paths->vertex_capacity, vertices));
+    if (paths->frame) {
+        ISO_TRY(make_frames(paths, vertices, paths->travel_count));
+        lie_flat(paths->frame, paths->vertex_count, vertices);
+    }
     iso_path *path = &paths->path[paths->count++];
     *path = *like;
     path->first = paths->vertex_count;
@@ -61,6 +98,20 @@ static iso_point moved(iso_point p, iso_point by) {
     return (iso_point){p.x + by.x, p.y + by.y};
 }
 
+/* Those of the paths that are about to be appended. */
+static void append_frames(iso_paths *paths, const iso_paths *more) {
+    int32_t vertices = paths->vertex_count, travels = paths->travel_count;
+    if (!more->frame) {
+        lie_flat(paths->frame, vertices, (int64_t)vertices + more->vertex_count);
+        lie_flat(paths->travel_frame, travels, (int64_t)travels + more->travel_count);
+        return;
+    }
+    memcpy(paths->frame + vertices, more->frame, (size_t)more->vertex_count * sizeof *more->frame);
+    if (more->travel_count > 0)
+        memcpy(paths->travel_frame + travels, more->travel_frame,
+               (size_t)more->travel_count * sizeof *more->travel_frame);
+}
+
 iso_status iso_paths_append(iso_paths *paths, const iso_paths *more, iso_point by, int32_t object) {
     int64_t count = (int64_t)paths->count + more->count;
     int64_t vertices = (int64_t)paths->vertex_count + more->vertex_count;
@@ -70,6 +121,10 @@ iso_status iso_paths_append(iso_paths *paths, const iso_paths *more, iso_point b
     ISO_TRY(ISO_GROW(paths->travel, paths->travel_capacity, travels));
     ISO_TRY(ISO_GROW(paths->path, paths->path_capacity, count));
     ISO_TRY(ISO_GROW(paths->vertex, paths->vertex_capacity, vertices));
+    if (paths->frame || more->frame) {
+        ISO_TRY(make_frames(paths, vertices, travels));
+        append_frames(paths, more);
+    }
     for (int32_t i = 0; i < more->count; i++) {
         iso_path *path = &paths->path[paths->count + i];
         *path = more->path[i];
