@@ -14,7 +14,8 @@
  * and a little more. */
 static void find_ranges(solid_planes *p) {
     const iso_levels *levels = p->levels;
-    double scale = levels_scale(levels), margin = PLANES_UP_MAX + 2 / p->grid.scale;
+    double scale = levels_scale(levels->cut, levels->count);
+    double margin = PLANES_UP_MAX + 2 / p->grid.scale;
     plane_range *to = p->range;
     for (int32_t m = 0; m < p->count; m++) {
         const iso_mesh *mesh = &p->mesh[m];
@@ -25,7 +26,7 @@ static void find_ranges(solid_planes *p) {
             double least = h[0] < h[1] ? h[0] : h[1], most = h[0] < h[1] ? h[1] : h[0];
             least = (h[2] < least ? h[2] : least) - margin;
             most = (h[2] > most ? h[2] : most) + margin;
-            int32_t low = levels_first_at(levels, scale, least), high = low;
+            int32_t low = levels_first_at(levels->cut, levels->count, scale, least), high = low;
             while (high < levels->count && levels->cut[high] <= most)
                 high++;
             *to++ = (plane_range){low, high};
