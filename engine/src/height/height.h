@@ -6,10 +6,13 @@
 #include <isoslice/field.h>
 #include <isoslice/mesh.h>
 
-/* mm along the surface from `source` ([source_count] vertices), at each vertex; infinite on parts
- * without one. Crane, Weischedel, Wardetzky, "Geodesics in Heat", 2013, on an intrinsic Delaunay
- * triangulation; then made exact along edges near the source. */
+/* mm along the surface from `source` ([source_count] vertices, and edges between two of them), at
+ * each vertex: exact on the triangles as they are, but for rounding; infinite on parts without a
+ * source. ISO_USAGE: a source that is no vertex. */
 iso_status height_geodesic(double *distance, const iso_mesh *mesh, const int32_t *source,
                            int32_t source_count) ISO_MUST_CHECK;
+
+/* Upwards from each shell's own lowest points, where it is as high as they lie above `foot`. */
+iso_status height_geodesic_rise(double *distance, const iso_mesh *mesh, double foot) ISO_MUST_CHECK;
 
 #endif
