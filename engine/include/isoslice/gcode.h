@@ -101,7 +101,8 @@ typedef struct iso_machine_limits {
  * file has them. A move that turns the part a lot is told in pieces. */
 typedef struct iso_gcode_move {
     iso_vec3 from, to;               /* mm */
-    iso_vec3 from_normal, to_normal; /* unit: where the tool comes from; up unless the part turns */
+    iso_vec3 from_normal, to_normal; /* unit: where the tool comes from, if the part turns; else the
+                                      * layer's, across the bead */
     double width, height;            /* mm of the bead it leaves; 0: a travel */
 } iso_gcode_move;
 

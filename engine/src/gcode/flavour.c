@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gcode/number.h"
+#include "pose/pose.h"
 
 #define UNITS "G21 ; millimetres\nG90 ; absolute coordinates\n"
 #define HEATING                                                                                    \
@@ -22,11 +23,14 @@
     .nozzle = "M104 S# T0", .bed = "M140 S#", .bed_wait = "M109 S#", .fan = "M126",                \
     .fan_off = "M127", .axis = " E", RETRACTION, .acceleration = "M204 S#", .progress = 1
 
+/* Marlin 2 has no G93, and counts F in X, Y and Z, or in degrees if none of them moves. Klipper has
+ * no word of its own: a manual_stepper takes it (docs/more-axes.md). */
 static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
     [ISO_FLAVOUR_MARLIN2] = {.name = "marlin2",
                              MARLIN,
                              .acceleration = "M204 P#",
-                             .travel_acceleration = "M204 T#"},
+                             .travel_acceleration = "M204 T#",
+                             .turns = "ABC"},
     [ISO_FLAVOUR_MARLIN] = {.name = "marlin", MARLIN, .acceleration = "M204 S#"},
     [ISO_FLAVOUR_KLIPPER] = {.name = "klipper",
                              HEATING,
@@ -40,7 +44,8 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                              .color_change = "PAUSE",
                              .limits = ISO_LIMITS_KLIPPER,
                              .labels = ISO_LABELS_KLIPPER,
-                             .progress = 1},
+                             .progress = 1,
+                             .turns = "ABC"},
     [ISO_FLAVOUR_REPRAP] = {.name = "reprap", SPRINTER, .progress = 1},
     [ISO_FLAVOUR_REPRAPFIRMWARE] = {.name = "reprapfirmware",
                                     .nozzle = "G10 S# P0",
@@ -59,7 +64,9 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                                     .color_change = "M600",
                                     .limits = ISO_LIMITS_DUET,
                                     .labels = ISO_LABELS_DUET,
-                                    .progress = 1},
+                                    .progress = 1,
+                                    .turns = "ABC",
+                                    .inverse_time = 1},
     [ISO_FLAVOUR_REPETIER] = {.name = "repetier",
                               HEATING,
                               FAN,
@@ -68,7 +75,8 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                               RETRACTION,
                               .units = UNITS,
                               .acceleration = "M201 X# Y#\nM202 X# Y#",
-                              .volumetric = "M200 D#"},
+                              .volumetric = "M200 D#",
+                              .turns = "ABC"},
     [ISO_FLAVOUR_SMOOTHIE] = {.name = "smoothie",
                               SPRINTER,
                               .volumetric = "M200 D#",
@@ -95,7 +103,9 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                                 .retract = "G22",
                                 .deretract = "G23",
                                 .units = UNITS,
-                                .acceleration = "M204 S#"},
+                                .acceleration = "M204 S#",
+                                .turns = "BC",
+                                .inverse_time = 1},
     [ISO_FLAVOUR_MACH3] = {.name = "mach3",
                            HEATING_BY_P,
                            .fan = "M106 P#",
@@ -103,7 +113,9 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                            .axis = " A",
                            RETRACTION,
                            .units = UNITS,
-                           .acceleration = "M204 S#"},
+                           .acceleration = "M204 S#",
+                           .turns = "BC",
+                           .inverse_time = 1},
     [ISO_FLAVOUR_SAILFISH] = {.name = "sailfish", MAKERBOT, .units = UNITS, .tool = "M108 T#"},
     [ISO_FLAVOUR_MAKERWARE] = {.name = "makerware",
                                MAKERBOT,
@@ -116,11 +128,33 @@ static const iso_flavour_words words[ISO_FLAVOUR_COUNT] = {
                                   FAN,
                                   .units = UNITS,
                                   .axis = "",
-                                  .acceleration = "M204 S#"},
+                                  .acceleration = "M204 S#",
+                                  .turns = "ABC",
+                                  .inverse_time = 1},
 };
 
 const iso_flavour_words *iso_flavour_get_words(iso_flavour flavour) {
     return &words[(unsigned)flavour < ISO_FLAVOUR_COUNT ? flavour : ISO_FLAVOUR_MARLIN2];
+}
+
+iso_status iso_flavour_check_machine(const iso_gcode_options *options) {
+    const iso_flavour_words *of = iso_flavour_get_words(options->flavour);
+    const char *letters = of->turns ? of->turns : "";
+    for (int i = 0; pose_turns(options->machine) && i < 2; i++) {
+        const char *letter = pose_letter(options->machine, i);
+        if (*letter && !strstr(letters, letter))
+            return iso_fail(ISO_BAD_CONFIG,
+                            "kinematics: %s has no axis %s that turns the part%s; see "
+                            "docs/more-axes.md for flavours that have",
+                            of->name, letter,
+                            strcmp(of->axis, " A") == 0 ? ", A is its filament" : "");
+    }
+    if (pose_turns(options->machine) && options->rotary_feed == ISO_FEED_INVERSE_TIME &&
+        !of->inverse_time)
+        return iso_fail(ISO_BAD_CONFIG,
+                        "rotary_feed: %s has no G93; take compensated in place of inverse_time",
+                        of->name);
+    return ISO_OK;
 }
 
 char *iso_flavour_put(char *to, const char *command, int64_t number, int decimals) {

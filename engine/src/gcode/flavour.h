@@ -36,10 +36,15 @@ typedef struct iso_flavour_words {
     const char *tool;                     /* takes another; NULL: T# */
     iso_limits_dialect limits;
     iso_label_dialect labels;
-    int progress; /* understands M73 */
+    int progress;      /* understands M73 */
+    const char *turns; /* letters of the axes that may turn the part; NULL: none */
+    int inverse_time;  /* understands G93 and G94 */
 } iso_flavour_words;
 
 const iso_flavour_words *iso_flavour_get_words(iso_flavour flavour);
+
+/* Does the flavour have the words for how the machine turns the part? ISO_BAD_CONFIG: no. */
+iso_status iso_flavour_check_machine(const iso_gcode_options *options) ISO_MUST_CHECK;
 
 /* The command with the number, in `decimals` decimals, for each #; returns the end. No newline. */
 char *iso_flavour_put(char *to, const char *command, int64_t number, int decimals);

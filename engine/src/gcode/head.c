@@ -4,7 +4,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "gcode/head_parts.h"
 #include "gcode/number.h"
+#include "gcode/space.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -13,10 +15,6 @@ static const double pi = 3.14159265358979323846;
 
 enum { E_DECIMALS = 100000, UNKNOWN = ISO_HEAD_UNKNOWN };
 
-/* E is summed up in 2^-28 of its last digit (10 nm): what 10^7 moves round away stays below a tenth
- * of that digit, and 343 km of filament fit an int64. */
-#define E_FRACTION 28
-
 int32_t iso_head_feed(double speed) {
     double feed = speed * 60 + 0.5;
     return feed < 1 ? 1 : (int32_t)feed;
@@ -24,10 +22,6 @@ int32_t iso_head_feed(double speed) {
 
 static int64_t to_e(double mm) {
     return (int64_t)(mm * E_DECIMALS + (mm < 0 ? -0.5 : 0.5));
-}
-
-static int32_t to_micrometres(int32_t units) {
-    return units < 0 ? (units - 5) / 10 : (units + 5) / 10;
 }
 
 /* Where one acceleration holds for all moves, travel goes back to the usual one. */
@@ -41,6 +35,17 @@ static int32_t travel_acceleration(const iso_head *head) {
     return (int32_t)((limit > 0 && wanted > limit ? limit : wanted) + 0.5);
 }
 
+/* Where the part turns the estimate follows the tip over the part, and what the axes can do is seen
+ * to move by move. */
+static void start_planner(iso_head *head, const iso_machine_limits *limits) {
+    iso_machine_limits own = *limits;
+    for (int i = 0; i < 3 && head->machine; i++) {
+        own.feedrate[i] = own.acceleration[i] = INFINITY;
+        own.jerk[i] = limits->jerk[0] < limits->jerk[1] ? limits->jerk[0] : limits->jerk[1];
+    }
+    iso_planner_start(&head->planner, &own);
+}
+
 void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *options) {
     const iso_gcode_options *o = options;
     double section = pi / 4 * o->filament_diameter * o->filament_diameter;
@@ -49,7 +54,8 @@ void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *o
     double z_speed = o->travel_speed_z > 0 ? o->travel_speed_z : o->travel_speed;
     double deretract_speed = o->deretract_speed > 0 ? o->deretract_speed : o->retract_speed;
     memset(head, 0, offsetof(iso_head, planner));
-    iso_planner_start(&head->planner, &o->limits);
+    head->machine = pose_turns(o->machine) ? o->machine : NULL;
+    start_planner(head, &o->limits);
     iso_modes_start(&head->modes, lines, o);
     head->lines = lines;
     head->options = o;
@@ -70,10 +76,21 @@ void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *o
         head->wipe_length = (1 - o->retract_before_wipe) * o->retract_length / o->retract_speed *
                             WIPE_PACE * o->travel_speed * ISO_UNITS_PER_MM;
     head->role = head->width = UNKNOWN;
+    head->z_offset = iso_units(o->z_offset);
+    head->highest = UNKNOWN;
+    head->reach = -1;
+    head->normal = (iso_vec3){0, 0, 1};
     iso_head_forget_place(head);
 }
 
-void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height) {
+void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height, int space) {
+    if (head->space && !space)
+        head->above = iso_space_height_above_all(head);
+    head->space = space;
+    if (!space)
+        head->normal = (iso_vec3){0, 0, 1};
+    if (!space && (head->highest == UNKNOWN || z > head->highest))
+        head->highest = z;
     if (head->modes.words->reset_e)
         head->e = 0;
     head->layer_z = z;
@@ -83,6 +100,8 @@ void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height) {
 
 void iso_head_forget_place(iso_head *head) {
     head->x = head->y = head->z = head->feed = UNKNOWN;
+    head->angle[0] = head->angle[1] = INT64_MIN;
+    head->fine_feed = 0;
 }
 
 double iso_head_retraction_time(const iso_head *head) {
@@ -95,29 +114,54 @@ double iso_head_filament(const iso_head *head) {
     return (double)head->emitted / E_DECIMALS * head->e_unit;
 }
 
-static char *put_feed(iso_head *head, char *p, int32_t feed) {
-    if (feed == head->feed)
-        return p;
-    head->feed = feed;
-    head->speed = feed / 60.0;
-    p = ISO_PUT(p, " F");
-    return iso_put_integer(p, feed);
+void head_tell(iso_head *head, const iso_gcode_move *move) {
+    if (head->watched == ISO_OK)
+        head->watched = head->options->watch(head->options->watch_payload, move);
 }
 
-/* Move the filament by `delta` last digits. */
-static char *put_e(iso_head *head, char *p, int64_t delta) {
-    const char *axis = head->modes.words->axis;
-    head->e += delta;
-    if (!*axis)
-        return p;
-    p[0] = axis[0];
-    p[1] = axis[1];
-    return iso_put_hundred_thousandths(p + 2, head->relative_e ? delta : head->e);
+/* Of a move on a flat layer, from where the head is. */
+static void tell_flat(iso_head *head, int32_t x, int32_t y, int32_t z, int32_t width,
+                      int32_t height) {
+    double offset = head->options->z_offset;
+    if (head->x == UNKNOWN || head->z == UNKNOWN)
+        return;
+    iso_gcode_move move = {
+        .from = {head->x / 1000.0, head->y / 1000.0, to_micrometres(head->z) / 1000.0 - offset},
+        .to = {x / 1000.0, y / 1000.0, to_micrometres(z) / 1000.0 - offset},
+        .from_normal = {0, 0, 1},
+        .to_normal = {0, 0, 1},
+        .width = iso_mm(width),
+        .height = iso_mm(height)};
+    head_tell(head, &move);
+}
+
+static inline void tell(iso_head *head, int32_t x, int32_t y, int32_t z, int32_t width,
+                        int32_t height) {
+    if (head->options->watch)
+        tell_flat(head, x, y, z, width, height);
 }
 
 /* What is told holds, but no more than the machine's own. */
 static double acceleration_of(int32_t told, double limit) {
     return told > 0 && told < limit ? told : limit;
+}
+
+void head_plan(iso_head *head, const double delta[3], double length, double speed, int extrudes,
+               double most) {
+    const iso_machine_limits *limits = &head->options->limits;
+    const iso_modes *modes = &head->modes;
+    iso_planner_move move = {.dx = delta[0],
+                             .dy = delta[1],
+                             .dz = delta[2],
+                             .length = length,
+                             .speed = speed,
+                             .extrudes = extrudes};
+    move.acceleration = extrudes ? acceleration_of(modes->acceleration, limits->extruding)
+                                 : acceleration_of(modes->travel_acceleration, limits->travel);
+    if (move.acceleration > most)
+        move.acceleration = most;
+    iso_planner_add(&head->planner, &move);
+    head->moves++;
 }
 
 static void plan(iso_head *head, double dx, double dy, double dz, int extrudes) {
@@ -141,7 +185,17 @@ static void plan_filament(iso_head *head, int64_t e) {
     head->moves++;
 }
 
+void iso_head_end_inverse_time(iso_head *head) {
+    if (!head->inverse)
+        return;
+    head->inverse = 0;
+    head->feed = UNKNOWN;
+    iso_modes_say(&head->modes, "G94", 0, "F in mm a minute");
+}
+
 static void move_filament(iso_head *head, int64_t e, int32_t feed, const char *comment) {
+    iso_head_end_inverse_time(head);
+    head->fine_feed = 0;
     char *p = ISO_PUT(iso_lines_reserve(head->lines), "G1");
     p = put_e(head, p, e);
     p = put_feed(head, p, feed);
@@ -164,6 +218,7 @@ static void move_wiping(iso_head *head, int32_t x, int32_t y, int64_t e, int32_t
         p = put_e(head, p, -e);
     p = put_feed(head, p, feed);
     iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, "wipe and retract"));
+    tell(head, x, y, head->z, 0, 0);
     plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
     head->x = x;
     head->y = y;
@@ -233,7 +288,7 @@ void iso_head_retract(iso_head *head) {
     iso_modes_say(&head->modes, words->retracted, 0, "extruder off");
 }
 
-static void deretract(iso_head *head) {
+void head_deretract(iso_head *head) {
     const iso_flavour_words *words = head->modes.words;
     if (!head->retracted)
         return;
@@ -268,6 +323,7 @@ static void move_z(iso_head *head, int32_t z, const char *comment) {
     iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment));
     if (head->z != UNKNOWN)
         plan(head, 0, 0, iso_mm(z - head->z), 0);
+    tell(head, head->x, head->y, z, 0, 0);
     head->z = z;
 }
 
@@ -281,13 +337,18 @@ static int32_t lift_of(const iso_head *head) {
 }
 
 void iso_head_reach_layer(iso_head *head) {
-    if (head->above == UNKNOWN)
+    if (head->above == UNKNOWN && !head->space)
         move_z(head, head->layer_z + lift_of(head), "to the layer");
 }
 
 void iso_head_rise_above(iso_head *head, int32_t z) {
     iso_head_retract(head);
-    head->above = z;
+    if (head->machine) {
+        iso_space_rise(head);
+        return;
+    }
+    int32_t all = head->highest == UNKNOWN ? z : iso_space_height_above_all(head);
+    head->above = z = z > all ? z : all;
     move_z(head, z, "above all");
 }
 
@@ -305,6 +366,7 @@ static void move_flat(iso_head *head, int32_t x, int32_t y) {
     iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, "travel"));
     if (head->x != UNKNOWN && !(head->doubtful && x == head->x && y == head->y))
         plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, 0, 0);
+    tell(head, x, y, head->z, 0, 0);
     head->x = x;
     head->y = y;
     head->doubtful = 0;
@@ -347,7 +409,7 @@ static void travel(iso_head *head, const iso_path *path, const iso_point *way, i
     }
     head->above = UNKNOWN;
     move_z(head, z, "to the layer");
-    deretract(head);
+    head_deretract(head);
 }
 
 static void say_role(iso_head *head, int32_t role) {
@@ -359,18 +421,17 @@ static void say_role(iso_head *head, int32_t role) {
     iso_lines_accept(head->lines, iso_put_newline(p));
 }
 
-static void blow(iso_head *head, int32_t role, const iso_layer_pace *pace) {
+void head_blow(iso_head *head, int32_t role, const iso_layer_pace *pace) {
     iso_modes_set_fan(&head->modes, iso_role_is_bridge(role) ? pace->bridge_fan : pace->fan);
 }
 
-/* What a piece of that role is printed with. */
-static void begin_piece(iso_head *head, int32_t role, const iso_layer_pace *pace) {
-    blow(head, role, pace);
+void head_begin_piece(iso_head *head, int32_t role, const iso_layer_pace *pace) {
+    head_blow(head, role, pace);
     iso_modes_accelerate(&head->modes, pace->acceleration[role]);
     say_role(head, role);
 }
 
-static const char *comment_of(int32_t role) {
+const char *head_comment_of(int32_t role) {
     static const char *const comment[ISO_ROLE_COUNT] = {[ISO_ROLE_EXTERNAL_PERIMETER] = "perimeter",
                                                         [ISO_ROLE_PERIMETER] = "perimeter",
                                                         [ISO_ROLE_OVERHANG_PERIMETER] = "perimeter",
@@ -389,17 +450,17 @@ static const char *comment_of(int32_t role) {
 
 /* Threads through the air are round, and infill of several layers is as high as they are: a stadium
  * of width w and height h has the area w h - (1 - pi / 4) h^2. Others are as high as the layer. */
-static int32_t height_of(const iso_head *head, const iso_path_vertex *bead) {
+int32_t head_height_of(const iso_path_vertex *bead, int32_t local) {
     const double corners = 1 - pi / 4;
     if (!iso_role_is_bridge(bead->role) && bead->role != ISO_ROLE_INTERNAL_INFILL)
-        return head->layer_height;
+        return local;
     double w = bead->width, rest = w * w - 4 * corners * bead->area;
     double height = rest < 0 ? w : (w - sqrt(rest)) / (2 * corners);
-    return height < 1.3 * head->layer_height ? head->layer_height : (int32_t)(height + 0.5);
+    return height < 1.3 * local ? local : (int32_t)(height + 0.5);
 }
 
 static char *put_bead(iso_head *head, char *p, const iso_path_vertex *bead) {
-    int32_t height = height_of(head, bead);
+    int32_t height = head_height_of(bead, head->layer_height);
     head->area = bead->area;
     if (bead->width != head->width)
         p = iso_put_newline(iso_put_decimal(ISO_PUT(p, ";WIDTH:"), bead->width, 4));
@@ -429,16 +490,27 @@ static void draw_segment(iso_head *head, const iso_path_vertex *from, iso_point 
         p = ISO_PUT(p, " Z");
         p = iso_put_thousandths(p, to_micrometres(z));
     }
-    int64_t e = (head->drawn + ((int64_t)1 << (E_FRACTION - 1))) >> E_FRACTION;
-    if (e != head->emitted)
-        p = put_e(head, p, e - head->emitted);
-    head->emitted = e;
+    int64_t e = take_e(head);
+    if (e != 0)
+        p = put_e(head, p, e);
     p = put_feed(head, p, feed);
-    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment_of(head->role)));
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, head_comment_of(head->role)));
     plan(head, (x - head->x) / 1000.0, (y - head->y) / 1000.0, iso_mm(z - head->z), 1);
+    tell(head, x, y, z, from->width, head->height);
     head->x = x;
     head->y = y;
     head->z = z;
+}
+
+static void tell_chord(iso_head *head, const iso_path_vertex *a, const iso_path_vertex *b) {
+    double z = to_micrometres(head->z) / 1000.0 - head->options->z_offset;
+    iso_gcode_move move = {.from = {iso_mm(a->at.x), iso_mm(a->at.y), z},
+                           .to = {iso_mm(b->at.x), iso_mm(b->at.y), z},
+                           .from_normal = {0, 0, 1},
+                           .to_normal = {0, 0, 1},
+                           .width = iso_mm(a->width),
+                           .height = iso_mm(head_height_of(a, head->layer_height))};
+    head_tell(head, &move);
 }
 
 /* A run of beads in one move: as far as they reach, along the circle they lie on. The planner gets
@@ -454,6 +526,8 @@ static void draw_arc(iso_head *head, const iso_arc *arc, const iso_path *path,
         length += chord * (1 + chord * chord / (24 * arc->radius * arc->radius));
         head->speed = feed / 60.0;
         plan(head, dx / ISO_UNITS_PER_MM, dy / ISO_UNITS_PER_MM, 0, 1);
+        if (head->options->watch)
+            tell_chord(head, &vertex[a], &vertex[b]);
     }
     head->moves -= arc->count - 1;
     head->drawn += (int64_t)(length * from->area * head->e_scale + 0.5);
@@ -467,12 +541,11 @@ static void draw_arc(iso_head *head, const iso_arc *arc, const iso_path *path,
     p = iso_put_thousandths(ISO_PUT(p, " Y"), y);
     p = iso_put_thousandths(ISO_PUT(p, " I"), (int32_t)floor(arc->center.x / 10 - head->x + 0.5));
     p = iso_put_thousandths(ISO_PUT(p, " J"), (int32_t)floor(arc->center.y / 10 - head->y + 0.5));
-    int64_t e = (head->drawn + ((int64_t)1 << (E_FRACTION - 1))) >> E_FRACTION;
-    if (e != head->emitted)
-        p = put_e(head, p, e - head->emitted);
-    head->emitted = e;
+    int64_t e = take_e(head);
+    if (e != 0)
+        p = put_e(head, p, e);
     p = put_feed(head, p, feed);
-    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, comment_of(head->role)));
+    iso_lines_accept(head->lines, iso_modes_end_line(&head->modes, p, head_comment_of(head->role)));
     head->x = x;
     head->y = y;
 }
@@ -487,14 +560,16 @@ static const iso_arc *take_arc(iso_head *head, int32_t path, int32_t i) {
     return head->arc++;
 }
 
-void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
-                   const double *length, const iso_layer_pace *pace) {
+iso_status iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
+                         const double *length, const iso_layer_pace *pace) {
     const iso_path_vertex *vertex = paths->vertex + path->first;
     const iso_point *way = path->travel_count > 0 ? paths->travel + path->travel_first : NULL;
     int32_t segments = path->closed ? path->count : path->count - 1;
     if (path->count < 2)
-        return;
-    blow(head, vertex[0].role, pace); /* it takes a while to turn faster */
+        return ISO_OK;
+    if (head->space)
+        return iso_space_draw(head, paths, path, length, pace);
+    head_blow(head, vertex[0].role, pace); /* it takes a while to turn faster */
     travel(head, path, way, vertex[0].at, head->layer_z + vertex[0].z);
     int32_t role = UNKNOWN, feed = 0, most = 0;
     int slot = 0;
@@ -505,7 +580,7 @@ void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
             slot = iso_speed_slot(role, path->speed_class);
             feed = pace->feed[slot];
             most = pace->most_area[slot];
-            begin_piece(head, role, pace);
+            head_begin_piece(head, role, pace);
         }
         int32_t own = from->area > most ? iso_pace_limited_feed(pace, slot, from->area) : feed;
         const iso_arc *arc = take_arc(head, (int32_t)(path - paths->path), i);
@@ -518,4 +593,5 @@ void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
     }
     if (head->wipe_length > 0)
         iso_wipe_remember(&head->wipe, path, vertex, head->wipe_length);
+    return ISO_OK;
 }

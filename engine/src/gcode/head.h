@@ -12,6 +12,7 @@
 #include "gcode/modes.h"
 #include "gcode/planner.h"
 #include "gcode/wipe.h"
+#include "pose/pose.h"
 
 enum { ISO_HEAD_UNKNOWN = INT32_MIN };
 
@@ -46,6 +47,18 @@ typedef struct iso_head {
     iso_wipe wipe;                      /* of the path last drawn, if it is asked for */
     double wipe_length;                 /* units: of a whole wipe; 0: none */
 
+    const pose_machine *machine;        /* NULL: it never turns the part */
+    const iso_pose *pose, *travel_pose; /* of the layer, if it does */
+    int64_t angle[2];                   /* in POSE_ANGLE */
+    iso_vec3 normal;                    /* of the layer where the nozzle is */
+    int32_t z_offset;                   /* units */
+    int32_t highest;                    /* units: of beads on layers that aren't flat; or UNKNOWN */
+    double reach;                       /* mm: of beads from the pivot; below 0: none */
+    int64_t fine_feed;                  /* in 1e-4: F where it has decimals; 0: unknown */
+    int inverse;                        /* G93 holds */
+    int space;                          /* the layer isn't flat, or the part turns */
+    iso_status watched;                 /* what the watch said */
+
     double bead_mm, travel_mm;
     int64_t moves, retractions;
     iso_planner planner;
@@ -54,8 +67,9 @@ typedef struct iso_head {
 /* The lines and options are the caller's and must outlive the head. */
 void iso_head_start(iso_head *head, iso_lines *lines, const iso_gcode_options *options);
 
-/* E begins at 0 again; role and width are to be said anew, the height, in units, has just been. */
-void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height);
+/* E begins at 0 again; role and width are to be said anew, the height, in units, has just been.
+ * `space`: it isn't flat, or the machine turns the part. */
+void iso_head_begin_layer(iso_head *head, int32_t z, int32_t height, int space);
 
 /* Somebody else moved it. */
 void iso_head_forget_place(iso_head *head);
@@ -69,14 +83,17 @@ void iso_head_retract(iso_head *head);
  * one was, but where it is will be said anew. Absolute E begins at 0 again. */
 void iso_head_take_tool(iso_head *head, int32_t from, int32_t to);
 
+/* F counts mm a minute again. */
+void iso_head_end_inverse_time(iso_head *head);
+
 /* Up to a height over all that stands; the next travel stays there until it is where it goes. */
 void iso_head_rise_above(iso_head *head, int32_t z);
 
 /* To the path's beginning, by way of the points where its travel turns, and along it, each bead at
  * its role's speed. length[i] in units from the path's vertex i to the next one. Nothing happens on
- * paths of less than two vertices. */
-void iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
-                   const double *length, const iso_layer_pace *pace);
+ * paths of less than two vertices. Fails only where the machine turns the part. */
+iso_status iso_head_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
+                         const double *length, const iso_layer_pace *pace) ISO_MUST_CHECK;
 
 /* s to pull the filament back and to bring it forth again, acceleration left out. */
 double iso_head_retraction_time(const iso_head *head);

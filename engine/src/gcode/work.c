@@ -17,6 +17,8 @@ static double length_of_travel(const iso_paths *paths, const iso_path *path,
     for (int32_t i = 0; i < path->travel_count; i++) {
         iso_path_vertex turn = at;
         turn.at = paths->travel[path->travel_first + i];
+        if (paths->travel_frame)
+            turn.z = paths->travel_frame[path->travel_first + i].z;
         sum += length_between(&at, &turn);
         at = turn;
     }

@@ -66,6 +66,10 @@ static void label_object(iso_gcode_writer *w, int32_t object) {
 
 static iso_status check_layer(const iso_gcode_writer *w, const iso_gcode_layer_info *layer) {
     const iso_paths *paths = layer->paths;
+    if (w->head.machine && ((paths->vertex_count > 0 && !layer->pose) ||
+                            (paths->travel_count > 0 && !layer->travel_pose)))
+        return iso_fail(ISO_BUG, "layer %d: the machine turns the part, and nobody says how",
+                        layer->index);
     for (int32_t i = 0; i < paths->count; i++)
         if (paths->path[i].role >= ISO_ROLE_COUNT)
             return iso_fail(ISO_BUG, "layer %d, path %d: there is no role %d", layer->index, i,
@@ -86,6 +90,7 @@ static iso_status put_user_text(iso_gcode_writer *w, const char *text) {
     static const char *const moving[] = {"G0", "G1", "G2", "G3", "G28"};
     if (!text || !*text)
         return ISO_OK;
+    iso_head_end_inverse_time(&w->head);
     ISO_TRY(iso_lines_flush(&w->lines));
     size_t size = strlen(text);
     ISO_TRY(iso_output_write(w->lines.output, text, size));
@@ -162,10 +167,10 @@ static iso_status draw_path(iso_gcode_writer *w, const iso_paths *paths, const i
         ISO_TRY(change_tool(w, path->tool));
     label_object(w, path->role == ISO_ROLE_SKIRT ? -1 : path->object);
     double drawn_before = w->head.bead_mm;
-    iso_head_draw(&w->head, paths, path, w->length + path->first, pace);
+    ISO_TRY(iso_head_draw(&w->head, paths, path, w->length + path->first, pace));
     w->clock += (w->head.bead_mm - drawn_before) * 60 /
                 pace->feed[iso_speed_slot(path->role, path->speed_class)];
-    return ISO_OK;
+    return w->head.watched;
 }
 
 static iso_status put_event(iso_gcode_writer *w, const iso_event *event) {
@@ -210,7 +215,10 @@ static iso_status begin_layer(iso_gcode_writer *w, const iso_gcode_layer_info *l
     ISO_TRY(put_text(w, ISO_TEXT_BEFORE_LAYER));
     if (w->words->reset_e)
         put_line(w, w->words->reset_e);
-    iso_head_begin_layer(&w->head, layer->z, layer->height);
+    int space = layer->paths->frame != NULL || w->head.machine != NULL;
+    iso_head_begin_layer(&w->head, layer->z, layer->height, space);
+    w->head.pose = layer->pose;
+    w->head.travel_pose = layer->travel_pose;
     w->head.arc = layer->arc;
     w->head.arc_end = layer->arc + layer->arc_count;
     return put_layer_text(w);
@@ -250,6 +258,7 @@ iso_status iso_gcode_next_object(iso_gcode_writer *w, int32_t object) {
     w->place.object = object;
     w->events.next = w->events.count; /* they came with the first object */
     iso_head_rise_above(&w->head, w->highest + CLEARANCE + w->head.lift);
+    ISO_TRY(w->head.watched);
     iso_modes_set_fan(&w->head.modes, 0);
     return put_text(w, ISO_TEXT_BETWEEN_OBJECTS);
 }
@@ -261,6 +270,7 @@ static iso_status writer_start(iso_gcode_writer *w, iso_output *output) {
     w->place = (iso_gcode_place){.layer = -1, .object = 0};
     iso_lines_start(&w->lines, output);
     iso_head_start(&w->head, &w->lines, o);
+    ISO_TRY(iso_flavour_check_machine(o));
     ISO_TRY(iso_labels_check(o));
     ISO_TRY(iso_events_new(&w->events, o));
     ISO_TRY(ISO_ALLOCATE(w->text, o->text ? TEXT_SIZE : 1));
@@ -466,6 +476,8 @@ iso_status iso_gcode_finish(iso_gcode_totals *totals, iso_gcode_writer *w,
                             iso_gcode_config_lines *config, void *payload) {
     iso_gcode_totals sum;
     iso_head_retract(&w->head);
+    ISO_TRY(w->head.watched);
+    iso_head_end_inverse_time(&w->head);
     iso_modes_set_fan(&w->head.modes, 0);
     sum_up(&sum, w);
     put_line(w, ";TYPE:Custom");
