@@ -25,13 +25,16 @@ typedef enum iso_field_kind {
     ISO_FIELD_GEODESIC,   /* along the model's surface, from its lowest points: of that surface only
                            */
     ISO_FIELD_AUTO_TOP,   /* as the tops of the model lie (docs/curved-layers.md) */
-    ISO_FIELD_FUNCTION    /* of the caller's */
+    ISO_FIELD_FUNCTION,   /* of the caller's */
+    ISO_FIELD_BLEND       /* flat layers that bend into another field's (iso_field_blend) */
 } iso_field_kind;
 
 typedef struct iso_field iso_field;
 
 /* value in [low, high] and gradient, by component, in [gradient_low, gradient_high] everywhere in a
- * box, for certain. What isn't known is infinite. */
+ * box, for certain. What isn't known is infinite; finite ends say that there is a value everywhere.
+ * Gradients have in them all slopes next to a kink, and are infinite where the value jumps: between
+ * two points of the box it changes by no more than they say. */
 typedef struct iso_field_bound {
     double low, high;
     iso_vec3 gradient_low, gradient_high;
@@ -60,7 +63,9 @@ ISO_API iso_status iso_field_from_function(iso_field **field, iso_field_function
                                            void *payload) ISO_MUST_CHECK;
 
 /* z up to `from`, `field` from `to` on, and a smooth way from one to the other between: a planar
- * base under curved layers. Takes `field` over, also on failure. ISO_USAGE: to <= from. */
+ * base under curved layers. A constant is taken off `field` to make it agree with z at x = y = 0
+ * halfway between. Where layers would have to fall back below the base it doesn't rise with z; so
+ * say those who use it. Takes `field` over, also on failure. ISO_USAGE: to <= from. */
 ISO_API iso_status iso_field_blend(iso_field **blended, iso_field *field, double from,
                                    double to) ISO_MUST_CHECK;
 
@@ -80,7 +85,8 @@ ISO_API iso_field_kind iso_field_kind_of(const iso_field *field);
 ISO_API int iso_field_is_z(const iso_field *field);
 
 /* value[count], gradient[count] or NULL, at count points. Never fails; where a field has no value
- * it is NaN. No allocation; any number of threads at once. */
+ * it is NaN. A gradient never is, nor infinite: where there is none it is one of those beside, or
+ * 0. No allocation; any number of threads at once. */
 ISO_API void iso_field_evaluate(double *value, iso_vec3 *gradient, const iso_field *field,
                                 const iso_vec3 *at, int64_t count);
 

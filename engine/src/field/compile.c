@@ -1,10 +1,9 @@
 /* From the text of an expression to its steps. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/series.h"
+#include "field/number.h"
 #include "field/program.h"
 
 enum {
@@ -149,47 +148,12 @@ static iso_status enter(parser *p) {
     return ISO_OK;
 }
 
-/* Digits behind the 18th only count as places. */
-static void read_digits(int64_t *digits, int32_t *exponent, parser *p, int32_t place) {
-    for (; is_digit(*p->at); p->at++) {
-        if (*digits < 100000000000000000) {
-            *digits = *digits * 10 + (*p->at - '0');
-            *exponent -= place;
-        } else if (*exponent < 100000) {
-            *exponent += 1 - place;
-        }
-    }
-}
-
-/* Up to 15 digits and 22 places come out rounded right; others within two last bits. The C
- * library's way depends on the locale. */
 static iso_status read_number(part *value, parser *p) {
-    int64_t digits = 0;
-    int32_t exponent = 0, power = 0;
-    read_digits(&digits, &exponent, p, 0);
-    if (*p->at == '.') {
-        p->at++;
-        read_digits(&digits, &exponent, p, 1);
-    }
-    if (*p->at == 'e' || *p->at == 'E') {
-        p->at++;
-        bool negative = *p->at == '-';
-        p->at += *p->at == '-' || *p->at == '+';
-        if (!is_digit(*p->at))
-            return expected(p, "digits of the exponent");
-        for (; is_digit(*p->at); p->at++)
-            power = power < 100000 ? power * 10 + (*p->at - '0') : power;
-        exponent += negative ? -power : power;
-    }
+    *value = (part){.is_number = true};
+    if (!number_read(&value->number, &p->at))
+        return expected(p, "digits of the exponent");
     if (is_letter(*p->at) || *p->at == '.')
         return expected(p, "an operator behind the number");
-    double number = (double)digits;
-    for (; exponent < -200 && number > 0; exponent += 200)
-        number /= 1e200;
-    number = exponent < 0 ? number / series_power(10, -exponent)
-             : number > 0 ? number * series_power(10, exponent)
-                          : 0;
-    *value = (part){true, 0, number};
     skip_blanks(p);
     return ISO_OK;
 }
@@ -250,7 +214,7 @@ static iso_status read_name(part *value, parser *p) {
 }
 
 static iso_status read_value(part *value, parser *p) {
-    if (is_digit(*p->at) || (*p->at == '.' && is_digit(p->at[1])))
+    if (number_begins(p->at))
         return read_number(value, p);
     if (is_letter(*p->at))
         return read_name(value, p);

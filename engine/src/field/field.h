@@ -3,7 +3,11 @@
 #ifndef ISO_FIELD_FIELD_H
 #define ISO_FIELD_FIELD_H
 
+#include <stdbool.h>
+
 #include <isoslice/field.h>
+
+#include "field/interval.h"
 
 typedef struct field_operations {
     iso_field_kind kind;
@@ -17,6 +21,17 @@ struct iso_field {
     const field_operations *operations;
 };
 
+/* A box as intervals, and back. */
+static inline void field_box(interval box[3], iso_vec3 low, iso_vec3 high) {
+    box[0] = (interval){low.x, high.x};
+    box[1] = (interval){low.y, high.y};
+    box[2] = (interval){low.z, high.z};
+}
+void field_bound_set(iso_field_bound *bound, interval value, const interval gradient[3]);
+/* Narrow a bound of what doesn't jump: over the box it is no further from `middle`, what it is in
+ * the box's middle, than the slopes say. */
+void field_bound_narrow(iso_field_bound *bound, interval middle, iso_vec3 low, iso_vec3 high);
+
 /* What charts ask of the kinds that have their own (chart/). */
 typedef struct field_shape {
     iso_vec3 center; /* of a sphere, torus; a point of the axis else */
@@ -28,5 +43,22 @@ typedef struct field_shape {
 
 /* Of an analytic kind; of a blend, its curved part's. */
 field_shape field_shape_of(const iso_field *field);
+
+/* ---- the kinds ---- */
+
+/* What each analytic kind needs: its shape, and besides */
+typedef struct field_numbers {
+    field_shape shape;
+    double amplitude, length, direction; /* of a wave: mm, mm, degrees */
+} field_numbers;
+
+iso_status field_new_shape(iso_field **field, iso_field_kind kind,
+                           const field_numbers *numbers) ISO_MUST_CHECK;
+iso_status field_new_expression(iso_field **field, const char *text) ISO_MUST_CHECK;
+
+/* Of an analytic kind, else NULL. */
+const field_shape *field_own_shape(const iso_field *field);
+/* The curved part of a blend; NULL: it is none. */
+const iso_field *field_curved_part(const iso_field *field);
 
 #endif

@@ -1,0 +1,140 @@
+#include "field/interval.h"
+
+#include "base/series.h"
+
+/* Of our series, and for a rounding or two around them: four times what they promise. */
+static const double series_error = 8e-15;
+static const double pi = 3.14159265358979323846;
+
+static double product(double a, double b) {
+    return a == 0 || b == 0 ? 0 : a * b;
+}
+
+/* Products may become subnormal, where an error has no relation to their size. */
+static const double least_product = 0x1p-1060;
+
+interval interval_multiply(interval a, interval b) {
+    if (interval_is(a, 0) || interval_is(b, 0))
+        return interval_at(0);
+    if (interval_is(a, 1))
+        return b;
+    if (interval_is(b, 1))
+        return a;
+    double p = product(a.low, b.low), q = product(a.low, b.high), r = product(a.high, b.low),
+           s = product(a.high, b.high);
+    interval c = interval_rounded(fmin(fmin(p, q), fmin(r, s)) - least_product,
+                                  fmax(fmax(p, q), fmax(r, s)) + least_product);
+    bool positive = (a.low >= 0 && b.low >= 0) || (a.high <= 0 && b.high <= 0);
+    bool negative = (a.low >= 0 && b.high <= 0) || (a.high <= 0 && b.low >= 0);
+    if (positive && c.low < 0)
+        c.low = 0;
+    if (negative && c.high > 0)
+        c.high = 0;
+    return c;
+}
+
+/* One over an interval; at its end zero has the sign of the rest. */
+static interval inverse(interval a) {
+    if ((a.low < 0 && a.high > 0) || interval_is(a, 0))
+        return interval_whole();
+    if (a.low == 0)
+        return (interval){interval_rounded(1 / a.high, 1 / a.high).low, HUGE_VAL};
+    if (a.high == 0)
+        return (interval){-HUGE_VAL, interval_rounded(1 / a.low, 1 / a.low).high};
+    return interval_rounded(1 / a.high, 1 / a.low);
+}
+
+/* Twice rounded where a quotient is once: the ends lie outside of it all the same. */
+interval interval_divide(interval a, interval b) {
+    return interval_multiply(a, inverse(b));
+}
+
+interval interval_square(interval a) {
+    interval size = interval_abs(a);
+    return interval_rounded(size.low * size.low, size.high * size.high + least_product);
+}
+
+interval interval_sqrt(interval a) {
+    return a.low < 0 ? interval_whole() : interval_rounded(sqrt(a.low), sqrt(a.high));
+}
+
+/* Is some first + k step in the interval, or might it be but for rounding? */
+static bool meets(interval a, double first, double step) {
+    double low = (a.low - first) / step, high = (a.high - first) / step;
+    low -= 1e-14 * (1 + fabs(low));
+    high += 1e-14 * (1 + fabs(high));
+    return floor(high) >= low;
+}
+
+/* Angles that a double knows poorly, or a whole turn of them. */
+static bool is_anywhere(interval a) {
+    return !(a.low > -1e6 && a.high < 1e6 && a.high - a.low < 6.2);
+}
+
+interval interval_sine(interval a) {
+    if (!interval_is_finite(a))
+        return interval_whole();
+    if (is_anywhere(a))
+        return (interval){-1, 1};
+    double s, t, unused;
+    series_sine_cosine(&s, &unused, a.low);
+    series_sine_cosine(&t, &unused, a.high);
+    interval c = interval_outward(fmin(s, t), fmax(s, t), series_error);
+    if (c.low < -1 || meets(a, -pi / 2, 2 * pi))
+        c.low = -1;
+    if (c.high > 1 || meets(a, pi / 2, 2 * pi))
+        c.high = 1;
+    return c;
+}
+
+interval interval_cosine(interval a) {
+    if (!interval_is_finite(a))
+        return interval_whole();
+    if (is_anywhere(a))
+        return (interval){-1, 1};
+    double s, t, unused;
+    series_sine_cosine(&unused, &s, a.low);
+    series_sine_cosine(&unused, &t, a.high);
+    interval c = interval_outward(fmin(s, t), fmax(s, t), series_error);
+    if (c.low < -1 || meets(a, pi, 2 * pi))
+        c.low = -1;
+    if (c.high > 1 || meets(a, 0, 2 * pi))
+        c.high = 1;
+    return c;
+}
+
+/* Seen from outside, a box spans the angle between two of its corners. */
+interval interval_angle(bool *jumps, interval y, interval x) {
+    *jumps = x.low <= 0 && y.low <= 0 && y.high >= 0;
+    if (!interval_is_finite(x) || !interval_is_finite(y))
+        return interval_whole();
+    if (*jumps)
+        return interval_outward(-pi, pi, series_error);
+    double p = series_arctangent2(y.low, x.low), q = series_arctangent2(y.low, x.high),
+           r = series_arctangent2(y.high, x.low), s = series_arctangent2(y.high, x.high);
+    return interval_outward(fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)),
+                            series_error);
+}
+
+interval interval_norm(interval a, interval b) {
+    interval s = interval_abs(a), t = interval_abs(b);
+    interval c = interval_outward(series_hypotenuse(s.low, t.low),
+                                  series_hypotenuse(s.high, t.high), 0x1p-50);
+    return s.low == 0 && t.low == 0 ? (interval){0, c.high} : c;
+}
+
+/* At the end a of the interval: towards a's own sign it is largest where the rest is least. */
+static double share(double a, interval rest, bool up) {
+    double least = (a > 0) == up ? rest.low : rest.high;
+    if (a == 0)
+        return 0;
+    if (fabs(a) >= HUGE_VAL || least == 0)
+        return a > 0 ? 1 : -1;
+    return least < HUGE_VAL ? a / series_hypotenuse(a, least) : 0;
+}
+
+interval interval_share(interval a, interval rest) {
+    rest = interval_abs(rest);
+    interval c = interval_outward(share(a.low, rest, false), share(a.high, rest, true), 0x1p-50);
+    return interval_both(c, (interval){-1, 1});
+}
