@@ -62,12 +62,13 @@ ISO_API iso_status iso_field_from_function(iso_field **field, iso_field_function
                                            iso_field_function_bound *bound, double steepest,
                                            void *payload) ISO_MUST_CHECK;
 
-/* z up to `from`, `field` from `to` on, and a smooth way from one to the other between: a planar
- * base under curved layers. A constant is taken off `field` to make it agree with z at x = y = 0
- * halfway between. Where layers would have to fall back below the base it doesn't rise with z; so
- * say those who use it. Takes `field` over, also on failure. ISO_USAGE: to <= from. */
-ISO_API iso_status iso_field_blend(iso_field **blended, iso_field *field, double from,
-                                   double to) ISO_MUST_CHECK;
+/* A planar base under curved layers: z up to `from`, field - offset from `to` on, and between
+ * z + s (field - offset - z), where s goes from 0 to 1 without a kink. The smaller the difference,
+ * the less the layers between are squeezed or spread; where they would have to fall back below the
+ * base the blend doesn't rise with z, as those who use it then say. Takes `field` over, also on
+ * failure. ISO_USAGE: to <= from. */
+ISO_API iso_status iso_field_blend(iso_field **blended, iso_field *field, double offset,
+                                   double from, double to) ISO_MUST_CHECK;
 
 /* Any field, from a text: those above, and
  *

@@ -1,6 +1,5 @@
-/* Flat layers that bend into those of a field: z + s(z) (F - c - z), where s goes from 0 to 1 with
- * no kink at either end, and c makes both agree in the middle of the object: else the layers of a
- * field that counts from far away would all lie in between. */
+/* Flat layers that bend into those of a field: z + s(z) (F - offset - z), where s goes from 0 to 1
+ * with no kink at either end. */
 #include "field/field.h"
 
 #include <math.h>
@@ -12,8 +11,7 @@
 typedef struct blend_field {
     iso_field base;
     iso_field *curved;
-    double from, to; /* mm of z */
-    double less;     /* c */
+    double offset, from, to;
 } blend_field;
 
 static const blend_field *blend_of(const iso_field *field) {
@@ -29,14 +27,14 @@ static double share_at(double *growth, const blend_field *f, double z) {
 }
 
 static void blend(double *value, iso_vec3 *gradient, const blend_field *f, iso_vec3 at) {
-    double growth, share = share_at(&growth, f, at.z), above = *value - f->less - at.z;
+    double growth, share = share_at(&growth, f, at.z), above = *value - f->offset - at.z;
     if (at.z <= f->from) {
         *value = at.z;
         if (gradient)
             *gradient = vec3(0, 0, 1);
         return;
     }
-    *value = at.z >= f->to ? *value - f->less : at.z + share * above;
+    *value = at.z >= f->to ? *value - f->offset : at.z + share * above;
     if (gradient && at.z < f->to) {
         *gradient = vec3_times(*gradient, share);
         gradient->z += 1 - share + growth * above;
@@ -68,7 +66,7 @@ static part curved_part(const blend_field *f, iso_vec3 low, iso_vec3 high) {
     iso_field_bound bound;
     iso_field_bound_over(&bound, f->curved, low, high);
     part p = part_of(&bound);
-    p.value = interval_subtract(p.value, interval_at(f->less));
+    p.value = interval_subtract(p.value, interval_at(f->offset));
     return p;
 }
 
@@ -154,24 +152,23 @@ const iso_field *field_curved_part(const iso_field *field) {
     return field->operations == &operations ? blend_of(field)->curved : NULL;
 }
 
-static iso_status make(iso_field **blended, iso_field *field, double from, double to) {
-    if (!(to > from) || !(to - from < HUGE_VAL))
-        return iso_fail(ISO_USAGE, "flat layers can't bend into curved ones from z = %g to %g mm",
-                        from, to);
+static iso_status make(iso_field **blended, iso_field *field, double offset, double from,
+                       double to) {
+    if (!(to > from) || !(to - from < HUGE_VAL) || !(fabs(offset) < HUGE_VAL))
+        return iso_fail(ISO_USAGE,
+                        "flat layers can't bend into curved ones, %g less, from z = %g to %g mm",
+                        offset, from, to);
     blend_field *made;
     ISO_TRY(ISO_ALLOCATE(made, 1));
-    iso_vec3 middle = {0, 0, 0.5 * (from + to)};
-    double value;
-    iso_field_evaluate(&value, NULL, field, &middle, 1);
-    double less = fabs(value) < HUGE_VAL ? value - middle.z : 0;
-    *made = (blend_field){{&operations}, field, from, to, less};
+    *made = (blend_field){{&operations}, field, offset, from, to};
     *blended = &made->base;
     return ISO_OK;
 }
 
-iso_status iso_field_blend(iso_field **blended, iso_field *field, double from, double to) {
+iso_status iso_field_blend(iso_field **blended, iso_field *field, double offset, double from,
+                           double to) {
     *blended = NULL;
-    iso_status status = make(blended, field, from, to);
+    iso_status status = make(blended, field, offset, from, to);
     if (status != ISO_OK)
         iso_field_free(field);
     return status;
