@@ -22,7 +22,7 @@ static iso_status check_options(const iso_field_slicing *options) {
 /* The same gradient all over the model: faces need no look, and edges no search. */
 static int is_linear(const iso_field *field, const iso_mesh *mesh) {
     iso_field_bound b;
-    field->operations->bound(&b, field, mesh->min, mesh->max);
+    iso_field_bound_over(&b, field, mesh->min, mesh->max);
     return isfinite(b.gradient_low.x + b.gradient_low.y + b.gradient_low.z) &&
            b.gradient_low.x == b.gradient_high.x && b.gradient_low.y == b.gradient_high.y &&
            b.gradient_low.z == b.gradient_high.z;

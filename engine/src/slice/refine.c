@@ -69,7 +69,7 @@ static double spread_of(double low, double high) {
 
 static gradients bound_over(const refiner *s, iso_vec3 low, iso_vec3 high) {
     iso_field_bound b;
-    s->r->field->operations->bound(&b, s->r->field, low, high);
+    iso_field_bound_over(&b, s->r->field, low, high);
     iso_vec3 l = b.gradient_low, h = b.gradient_high;
     return (gradients){
         {middle_of(l.x, h.x), middle_of(l.y, h.y), middle_of(l.z, h.z)},

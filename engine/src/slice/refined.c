@@ -14,8 +14,7 @@ static iso_status evaluate(refined *r, int32_t first) {
     int32_t count = r->vertex_count - first;
     ISO_TRY(ISO_GROW(r->value, r->vertex_capacity[1], r->vertex_count));
     ISO_TRY(ISO_GROW(r->gradient, r->vertex_capacity[2], r->vertex_count));
-    r->field->operations->evaluate(r->value + first, r->gradient + first, r->field,
-                                   r->position + first, count);
+    iso_field_evaluate(r->value + first, r->gradient + first, r->field, r->position + first, count);
     for (int32_t v = first; v < r->vertex_count; v++)
         if (!finite(r->value[v])) {
             iso_vec3 p = r->position[v];

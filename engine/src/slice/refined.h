@@ -6,7 +6,6 @@
 #include <isoslice/slice.h>
 
 #include "base/memory.h"
-#include "field/field.h"
 
 /* A face that edges are split of. */
 typedef struct refined_parent {

@@ -7,7 +7,6 @@
 #include <stdbool.h>
 
 #include "base/vector.h"
-#include "field/field.h"
 
 #define CLOSE 1e-7  /* mm, of F to the level; fields rise about 1 a mm */
 #define NEAR 1e-3   /* of the edge: a Newton step this short is the last, without asking again */
@@ -65,7 +64,7 @@ void roots_find(iso_vec3 *point, const iso_field *field, const root_edge *edge, 
         int32_t kept = 0;
         for (int32_t k = 0; k < left; k++)
             at[k] = vec3_between(edge[open[k]].end[0], edge[open[k]].end[1], state[open[k]].t);
-        field->operations->evaluate(value, gradient, field, at, left);
+        iso_field_evaluate(value, gradient, field, at, left);
         for (int32_t k = 0; k < left; k++)
             if (!improve(&state[open[k]], &edge[open[k]], value[k], gradient[k]))
                 open[kept++] = open[k];
