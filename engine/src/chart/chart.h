@@ -17,7 +17,10 @@
 #include <stdbool.h>
 
 #include <isoslice/field.h>
+#include <isoslice/path.h>
 #include <isoslice/slice.h>
+
+#include "base/memory.h"
 
 typedef enum chart_kind { CHART_GRAPH, CHART_CYLINDER, CHART_SPHERE, CHART_FAN } chart_kind;
 
@@ -43,6 +46,14 @@ chart_kind chart_kind_of(const chart *chart);
 /* mm: u and u + chart_period(chart) are the same place; 0: none is. u runs from -period / 2. */
 double chart_period(const chart *chart);
 
+/* mm: of a straight line in the chart no longer than this, the normals at its ends tell for certain
+ * enough how it runs on the layer; 0: of any line. */
+double chart_reach(const chart *chart);
+
+/* How much farther a straight line in the chart may swerve sideways on the layer, near `point`,
+ * than it bends with it: a factor on that, 0 where straight lines stay straight. */
+double chart_swerve(const chart *chart, const chart_point *point);
+
 /* u, v of points anywhere; r is the field's value there and isn't asked. */
 void chart_down(iso_vec2 *flat, const chart *chart, const iso_vec3 *at, int64_t count);
 
@@ -50,15 +61,28 @@ void chart_down(iso_vec2 *flat, const chart *chart, const iso_vec3 *at, int64_t 
 iso_status chart_lift(chart_point *point, const chart *chart, const iso_vec2 *flat, double r,
                       int64_t count) ISO_MUST_CHECK;
 
+/* The same points, but thickness and volume are those of the whole layer, from F = r - thickness to
+ * F = r: its means. */
+iso_status chart_layer(chart_point *point, const chart *chart, const iso_vec2 *flat,
+                       const double layer[2], int64_t count) ISO_MUST_CHECK;
+
 /* The contours of all levels in the chart. Where it wraps they are cut at its ends, and closed
  * along them, so that each level is a set of closed contours; `margin` mm beyond each end is there
- * twice. Level i of `curves` lies on F = level[i]. */
+ * twice. The slices own their arrays. ISO_OUTSIDE, naming the place: layers fold over there. */
 iso_status chart_slices(iso_slices *slices, const chart *chart, const iso_curves *curves,
                         double margin) ISO_MUST_CHECK;
 
-/* mm^3 between r - below and r + above of the layer's region, contours summed by winding: its area
- * times thickness where the chart is flat. */
+/* mm^3 of the layer from F = r - thickness to F = r, with the region that this level has: contours
+ * summed by winding, and what is there twice counted once. `layer` is r and the thickness. */
 iso_status chart_volume(double *volume, const chart *chart, const iso_slices *slices, int32_t level,
-                        double r, double thickness) ISO_MUST_CHECK;
+                        const double layer[2], iso_arena *scratch) ISO_MUST_CHECK;
+
+/* Paths of a layer that wraps, cut to one period: what lies beyond is dropped, what crosses an end
+ * is split there exactly, and what goes on at the other end is joined with it, so that a loop
+ * around everything is a closed path again (from its last vertex to its first u jumps by a period).
+ * Groups that are joined become one. Where the chart doesn't wrap it is a copy. For paths that
+ * aren't ordered yet. Replaces what `out` held. */
+iso_status chart_clip_paths(iso_paths *out, const iso_paths *paths, const chart *chart,
+                            iso_arena *scratch) ISO_MUST_CHECK;
 
 #endif

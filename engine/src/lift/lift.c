@@ -1,0 +1,275 @@
+#include "lift/lift.h"
+
+#include <math.h>
+
+#include "base/vector.h"
+#include "lift/sample.h"
+#include "lift/task.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { RUN_MOST = 32 }; /* samples that one line passes over */
+
+/* ---- samples ---- */
+
+/* By how much beads may differ from the mean of their piece. */
+static const double bead_share = 0.08;
+
+static int64_t samples_of(const iso_paths *flat) {
+    int64_t count = 0;
+    for (int32_t p = 0; p < flat->count; p++)
+        count += flat->path[p].count > 0 ? flat->path[p].count + (flat->path[p].closed != 0) : 0;
+    return count;
+}
+
+static iso_vec2 to_mm(iso_point p) {
+    return (iso_vec2){iso_mm(p.x), iso_mm(p.y)};
+}
+
+/* A closed path comes back to its first vertex. */
+static iso_status sample_paths(samples *s, const iso_paths *flat, iso_arena *arena) {
+    int64_t n = 0;
+    ISO_TRY(ISO_PUSH(s->flat, arena, samples_of(flat)));
+    ISO_TRY(ISO_PUSH(s->owner, arena, samples_of(flat)));
+    for (int32_t p = 0; p < flat->count; p++) {
+        const iso_path *path = &flat->path[p];
+        for (int32_t i = 0; i < path->count; i++) {
+            s->flat[n] = to_mm(flat->vertex[path->first + i].at);
+            s->owner[n++] = path->first + i;
+        }
+        if (path->closed && path->count > 0) {
+            s->flat[n] = to_mm(flat->vertex[path->first].at);
+            s->owner[n++] = path->first;
+        }
+        if (path->count > 0)
+            s->owner[n - 1] = ~s->owner[n - 1];
+    }
+    s->count = n;
+    return ISO_OK;
+}
+
+/* ---- what a printer is able to ---- */
+
+static iso_status too_steep(const lift_task *t, const chart_point *p) {
+    double z = p->normal.z, across = sqrt(fmax(0, 1 - z * z));
+    return iso_fail(ISO_OUTSIDE,
+                    "at x %.3f y %.3f z %.3f mm (from the middle of the object and its foot) a "
+                    "layer rises by %.3f mm on 1 mm, more than the nozzle is allowed to follow "
+                    "(%.3f): choose a flatter field, or a larger field_slope",
+                    p->at.x, p->at.y, p->at.z, z > 0 ? across / z : HUGE_VAL, t->options->slope);
+}
+
+static iso_status wrong_thickness(const lift_task *t, const chart_point *p, double thickness) {
+    bool thin = thickness < t->options->least;
+    return iso_fail(ISO_OUTSIDE,
+                    "at x %.3f y %.3f z %.3f mm (from the middle of the object and its foot) a "
+                    "layer is %.4f mm thick, and may not be %s than %.4f mm: choose a %s "
+                    "layer_height, or a field whose layers lie more evenly",
+                    p->at.x, p->at.y, p->at.z, thickness, thin ? "thinner" : "thicker",
+                    thin ? t->options->least : t->options->most, thin ? "larger" : "smaller");
+}
+
+/* Rounding mustn't refuse what was made to lie at the limit. */
+static const double slack = 1e-3;
+
+static iso_status check_points(const lift_task *t) {
+    const lift_options *o = t->options;
+    double upright = o->slope > 0 ? 1 / sqrt(1 + o->slope * o->slope) * (1 - slack) : -2;
+    double least = o->least / o->thickness * (1 - slack);
+    double most = o->most > 0 ? o->most / o->thickness * (1 + slack) : HUGE_VAL;
+    for (int64_t i = 0; i < t->samples.count; i++) {
+        const chart_point *p = &t->samples.point[i];
+        if (!(p->normal.z >= upright))
+            return too_steep(t, p);
+        if (!(p->thickness >= least && p->thickness <= most))
+            return wrong_thickness(t, p, p->thickness * o->thickness);
+    }
+    return ISO_OK;
+}
+
+/* ---- beads ---- */
+
+/* mm^3 for each unit^2 of the flat bead's section: the chart's volume factor along the piece from i
+ * to i + 1, by the trapezoid, less what the bend of the factor adds to that: its second difference,
+ * on the same straight line, is the mean of those at both ends. */
+static double factor_along(const lift_task *t, int64_t i, int64_t begin, int64_t end) {
+    const samples *s = &t->samples;
+    double f[4], x[4], bend = 0;
+    int32_t bends = 0;
+    for (int64_t k = -1; k < 3; k++) {
+        if (i + k < begin || i + k > end)
+            continue;
+        f[k + 1] = s->point[i + k].volume;
+        x[k + 1] = k < 0    ? -t->length[i - 1]
+                   : k == 0 ? 0
+                   : k == 1 ? t->length[i]
+                            : t->length[i] + t->length[i + 1];
+    }
+    if (!(x[2] > 0))
+        return 0;
+    double slope = (f[2] - f[1]) / x[2];
+    if (i - 1 >= begin) {
+        bend += (slope - (f[1] - f[0]) / -x[0]) / (x[2] - x[0]);
+        bends++;
+    }
+    if (i + 2 <= end) {
+        bend += ((f[3] - f[2]) / (x[3] - x[2]) - slope) / x[3];
+        bends++;
+    }
+    double mean = 0.5 * (f[1] + f[2]);
+    if (bends > 0)
+        mean -= x[2] * x[2] * bend / (6 * bends);
+    return mean * x[2];
+}
+
+/* How high a bead of that width and section is; a stadium's area is w h - (1 - pi / 4) h^2. */
+static double height_of_bead(double width, double area) {
+    const double corners = 1 - pi / 4;
+    double rest = width * width - 4 * corners * area;
+    return rest < 0 ? width : (width - sqrt(rest)) / (2 * corners);
+}
+
+static iso_path_vertex vertex_at(const lift_task *t, const chart_point *p) {
+    return (iso_path_vertex){.at = {iso_units(p->at.x), iso_units(p->at.y)},
+                             .z = iso_units(p->at.z - t->options->z)};
+}
+
+static iso_status grow(iso_paths *out, int64_t vertices) {
+    if (vertices > INT32_MAX - 1)
+        return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
+    ISO_TRY(ISO_GROW(out->vertex, out->vertex_capacity, vertices));
+    return ISO_GROW(out->frame, out->frame_capacity, vertices);
+}
+
+static iso_status put_vertex(iso_paths *out, const lift_task *t, int64_t sample) {
+    const chart_point *p = &t->samples.point[sample];
+    int32_t owner = t->samples.owner[sample];
+    const iso_path_vertex *flat = &t->flat->vertex[owner < 0 ? ~owner : owner];
+    ISO_TRY(grow(out, (int64_t)out->vertex_count + 1));
+    iso_path_vertex *vertex = &out->vertex[out->vertex_count];
+    *vertex = vertex_at(t, p);
+    vertex->role = flat->role;
+    vertex->width = flat->width;
+    vertex->area = flat->area;
+    out->frame[out->vertex_count++] =
+        (iso_frame){.normal = p->normal, .height = iso_units(t->options->thickness * p->thickness)};
+    return ISO_OK;
+}
+
+static double units_between(const iso_path_vertex *a, const iso_path_vertex *b) {
+    double x = (double)b->at.x - a->at.x, y = (double)b->at.y - a->at.y, z = (double)b->z - a->z;
+    return sqrt(x * x + y * y + z * z);
+}
+
+static int32_t to_int32(double x) {
+    return x < INT32_MAX ? (int32_t)(x + 0.5) : INT32_MAX;
+}
+
+/* The bead from one vertex to another is as wide as what it holds makes it. `factor` is the chart's
+ * along the piece, in units of length. Returns what has no room as the piece has no length. */
+static double put_bead(iso_path_vertex *from, const iso_path_vertex *to, double factor,
+                       double thickness) {
+    double length = units_between(from, to);
+    if (!(length > 0))
+        return factor;
+    double flat = from->area, area = flat * factor / length;
+    double height = height_of_bead(from->width, flat) * thickness;
+    from->area = to_int32(area);
+    if (height > 0)
+        from->width = to_int32(area / height + (1 - pi / 4) * height);
+    return 0;
+}
+
+/* The farthest sample that a straight line from `i` may go to. */
+static int64_t run_end(const lift_task *t, int64_t i, int64_t last) {
+    int64_t end = i + 1;
+    while (end < last && end - i < RUN_MOST &&
+           sample_fits(&t->samples, i, end + 1, t->chart, &t->limits))
+        end++;
+    return end;
+}
+
+/* One flat bead, samples `begin` to `end`. The vertex at its beginning isn't there yet, nor is that
+ * at its end. */
+static iso_status lift_bead(iso_paths *out, const lift_task *t, int64_t begin, int64_t end) {
+    double left = 0;
+    for (int64_t i = begin, next; i < end; i = next) {
+        next = run_end(t, i, end);
+        double factor = left;
+        for (int64_t k = i; k < next; k++)
+            factor += factor_along(t, k, begin, end) * ISO_UNITS_PER_MM;
+        ISO_TRY(put_vertex(out, t, i));
+        iso_path_vertex to = vertex_at(t, &t->samples.point[next]);
+        left = put_bead(&out->vertex[out->vertex_count - 1], &to, factor,
+                        0.5 * (t->samples.point[i].thickness + t->samples.point[next].thickness));
+        if (left > 0 && next < end)
+            out->vertex_count--;
+    }
+    return ISO_OK;
+}
+
+/* From sample *i on; leaves *i behind the path's last one. */
+static iso_status lift_path(iso_paths *out, const lift_task *t, const iso_path *flat, int64_t *i) {
+    iso_path *path = &out->path[out->count++];
+    *path = *flat;
+    path->first = out->vertex_count;
+    path->travel_first = path->travel_count = 0;
+    if (flat->count == 0)
+        return ISO_OK;
+    const int32_t *owner = t->samples.owner;
+    while (owner[*i] >= 0) {
+        int64_t end = *i + 1;
+        while (owner[end] == owner[*i])
+            end++;
+        ISO_TRY(lift_bead(out, t, *i, end));
+        *i = end;
+    }
+    if (!flat->closed)
+        ISO_TRY(put_vertex(out, t, *i));
+    (*i)++;
+    path->count = out->vertex_count - path->first;
+    return ISO_OK;
+}
+
+static void measure(const lift_task *t) {
+    for (int64_t i = 0; i < t->samples.count; i++) {
+        if (sample_is_last(&t->samples, i))
+            continue;
+        iso_vec2 step = sample_step(t->chart, t->samples.flat[i], t->samples.flat[i + 1]);
+        t->length[i] = sqrt(step.x * step.x + step.y * step.y);
+    }
+}
+
+static iso_status lift_all(iso_paths *out, lift_task *t) {
+    const iso_paths *flat = t->flat;
+    int64_t i = 0;
+    ISO_TRY(sample_paths(&t->samples, flat, t->arena));
+    ISO_TRY(sample_refine(&t->samples, t->chart, &t->limits, t->arena));
+    ISO_TRY(check_points(t));
+    ISO_TRY(ISO_PUSH(t->length, t->arena, t->samples.count));
+    measure(t);
+    ISO_TRY(ISO_GROW(out->path, out->path_capacity, flat->count));
+    ISO_TRY(grow(out, t->samples.count));
+    for (int32_t p = 0; p < flat->count; p++)
+        ISO_TRY(lift_path(out, t, &flat->path[p], &i));
+    return lift_travels(out, t);
+}
+
+iso_status lift_paths(iso_paths *out, const iso_paths *flat, const chart *map,
+                      const lift_options *options, iso_arena *scratch) {
+    iso_arena_mark mark = iso_arena_get_mark(scratch);
+    lift_task task = {.flat = flat,
+                      .chart = map,
+                      .options = options,
+                      .limits = {.layer = {options->r, options->thickness},
+                                 .tolerance = options->tolerance,
+                                 .turn = options->turn,
+                                 .share = bead_share},
+                      .arena = scratch};
+    iso_paths_clear(out);
+    iso_status status = lift_all(out, &task);
+    iso_arena_pop(scratch, mark);
+    if (status != ISO_OK)
+        iso_paths_clear(out);
+    return status;
+}

@@ -1,0 +1,180 @@
+#include "lift/sample.h"
+
+#include <math.h>
+
+#include "base/vector.h"
+
+enum {
+    ROUNDS_MOST = 12,
+    PIECES_MOST = 8, /* out of one at a time: where a layer bends in few places most pieces of an
+                      * even cut would be for nothing */
+    REACH_MOST = 1 << 20
+};
+
+/* mm: a layer's crease is passed over by a piece no longer than this. */
+static const double shortest = 0.004;
+
+iso_vec2 sample_step(const chart *map, iso_vec2 a, iso_vec2 b) {
+    iso_vec2 step = {b.x - a.x, b.y - a.y};
+    double period = chart_period(map);
+    if (period > 0 && fabs(step.x) > 0.5 * period)
+        step.x -= period * floor(step.x / period + 0.5);
+    return step;
+}
+
+/* The layer along the chord is taken for the cubic that has its slopes at the ends: of a bump the
+ * height is at most a quarter of the larger slope, of a wave less. */
+double sample_rise(const chart_point *a, const chart_point *b) {
+    iso_vec3 chord = vec3_minus(b->at, a->at);
+    double up = -vec3_dot(chord, a->normal), down = vec3_dot(chord, b->normal);
+    double larger = fabs(up) > fabs(down) ? up : down;
+    return larger * (up * down > 0 ? 0.25 : 4.0 / 27);
+}
+
+static int32_t cuts(double share) {
+    return share < PIECES_MOST ? (int32_t)ceil(share) : PIECES_MOST;
+}
+
+static double larger_share(double a, double b) {
+    return (a > b ? a - b : b - a) / (a < b ? a : b);
+}
+
+/* Pieces that a piece must become, as its ends tell. */
+static int32_t pieces_of(const chart_point *a, const chart_point *b, const chart *map,
+                         const sample_limits *limits) {
+    double off = fabs(sample_rise(a, b)) * (1 + chart_swerve(map, b));
+    int32_t pieces = off > limits->tolerance ? cuts(sqrt(off / limits->tolerance)) : 1;
+    if (limits->turn > 0) {
+        double turn = vec3_distance(a->normal, b->normal);
+        if (turn > limits->turn && cuts(turn / limits->turn) > pieces)
+            pieces = cuts(turn / limits->turn);
+    }
+    if (limits->share > 0 && (a->volume != b->volume || a->thickness != b->thickness)) {
+        double share =
+            fmax(larger_share(a->volume, b->volume), larger_share(a->thickness, b->thickness));
+        if (share > limits->share && cuts(share / limits->share) > pieces)
+            pieces = cuts(share / limits->share);
+    }
+    return pieces;
+}
+
+static double squared_distance_to_line(iso_vec3 p, iso_vec3 a, iso_vec3 b) {
+    iso_vec3 chord = vec3_minus(b, a), to = vec3_minus(p, a);
+    double square = vec3_dot(chord, chord);
+    if (square > 0)
+        to = vec3_along(to, -vec3_dot(to, chord) / square, chord);
+    return vec3_dot(to, to);
+}
+
+bool sample_fits(const samples *s, int64_t i, int64_t j, const chart *map,
+                 const sample_limits *limits) {
+    double most = limits->tolerance * limits->tolerance;
+    for (int64_t k = i + 1; k < j; k++)
+        if (squared_distance_to_line(s->point[k].at, s->point[i].at, s->point[j].at) > most)
+            return false;
+    return pieces_of(&s->point[i], &s->point[j], map, limits) == 1;
+}
+
+/* A round of refinement. */
+typedef struct round_of {
+    int32_t number;
+    int64_t added;
+    int32_t *pieces; /* [samples] into which the piece after each one goes; 0: it is done */
+} round_of;
+
+static int32_t pieces_at(const samples *s, int64_t i, const chart *map, const sample_limits *limits,
+                         bool first) {
+    iso_vec2 step = sample_step(map, s->flat[i], s->flat[i + 1]);
+    double square = step.x * step.x + step.y * step.y, reach = chart_reach(map);
+    if (square < shortest * shortest)
+        return 1;
+    int32_t pieces = pieces_of(&s->point[i], &s->point[i + 1], map, limits);
+    if (first && reach > 0 && square > reach * reach) {
+        double least = ceil(sqrt(square) / reach);
+        int32_t many = least < REACH_MOST ? (int32_t)least : REACH_MOST;
+        pieces = pieces > many ? pieces : many;
+    }
+    return pieces;
+}
+
+static void count_pieces(round_of *round, const samples *s, const chart *map,
+                         const sample_limits *limits) {
+    round->added = 0;
+    for (int64_t i = 0; i < s->count; i++) {
+        if (round->number > 0 && round->pieces[i] == 0)
+            continue;
+        int32_t pieces =
+            sample_is_last(s, i) ? 1 : pieces_at(s, i, map, limits, round->number == 0);
+        round->pieces[i] = pieces == 1 ? 0 : pieces;
+        round->added += pieces - 1;
+    }
+}
+
+/* What comes between samples. */
+static void place_added(iso_vec2 *flat, const round_of *round, const samples *s, const chart *map) {
+    for (int64_t i = 0; i < s->count; i++) {
+        if (round->pieces[i] == 0)
+            continue;
+        iso_vec2 step = sample_step(map, s->flat[i], s->flat[i + 1]);
+        for (int32_t k = 1; k < round->pieces[i]; k++) {
+            double t = (double)k / round->pieces[i];
+            *flat++ = (iso_vec2){s->flat[i].x + t * step.x, s->flat[i].y + t * step.y};
+        }
+    }
+}
+
+static void merge(samples *to, int32_t *pieces, const round_of *round, const samples *s,
+                  const samples *added) {
+    int64_t n = 0, taken = 0;
+    for (int64_t i = 0; i < s->count; i++) {
+        to->flat[n] = s->flat[i];
+        to->point[n] = s->point[i];
+        to->owner[n] = s->owner[i];
+        pieces[n++] = round->pieces[i];
+        for (int32_t k = 1; k < round->pieces[i]; k++, taken++) {
+            to->flat[n] = added->flat[taken];
+            to->point[n] = added->point[taken];
+            to->owner[n] = s->owner[i];
+            pieces[n++] = 1; /* to be looked at */
+        }
+    }
+}
+
+static iso_status push_samples(samples *s, int64_t count, iso_arena *arena) {
+    s->count = count;
+    ISO_TRY(ISO_PUSH(s->flat, arena, count));
+    ISO_TRY(ISO_PUSH(s->point, arena, count));
+    return ISO_PUSH(s->owner, arena, count);
+}
+
+static iso_status add_samples(samples *s, round_of *round, const chart *map,
+                              const sample_limits *limits, iso_arena *arena) {
+    samples to, added;
+    int32_t *pieces;
+    ISO_TRY(push_samples(&to, s->count + round->added, arena));
+    ISO_TRY(ISO_PUSH(pieces, arena, to.count));
+    iso_arena_mark mark = iso_arena_get_mark(arena);
+    ISO_TRY(push_samples(&added, round->added, arena));
+    place_added(added.flat, round, s, map);
+    ISO_TRY(chart_layer(added.point, map, added.flat, limits->layer, added.count));
+    merge(&to, pieces, round, s, &added);
+    iso_arena_pop(arena, mark);
+    *s = to;
+    round->pieces = pieces;
+    return ISO_OK;
+}
+
+iso_status sample_refine(samples *s, const chart *map, const sample_limits *limits,
+                         iso_arena *arena) {
+    round_of round = {0};
+    ISO_TRY(ISO_PUSH(s->point, arena, s->count));
+    ISO_TRY(ISO_PUSH(round.pieces, arena, s->count));
+    ISO_TRY(chart_layer(s->point, map, s->flat, limits->layer, s->count));
+    for (; round.number < ROUNDS_MOST; round.number++) {
+        count_pieces(&round, s, map, limits);
+        if (round.added == 0)
+            break;
+        ISO_TRY(add_samples(s, &round, map, limits, arena));
+    }
+    return ISO_OK;
+}

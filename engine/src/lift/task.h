@@ -1,0 +1,21 @@
+/* A layer that is being lifted. */
+#ifndef ISO_LIFT_TASK_H
+#define ISO_LIFT_TASK_H
+
+#include "lift/lift.h"
+#include "lift/sample.h"
+
+typedef struct lift_task {
+    const iso_paths *flat;
+    const chart *chart;
+    const lift_options *options;
+    sample_limits limits; /* of beads */
+    samples samples;      /* of beads: path by path, those without vertices have none */
+    double *length;       /* [samples] mm in the chart of the piece that begins there */
+    iso_arena *arena;
+} lift_task;
+
+/* Points of all travels between the paths that `out` has. */
+iso_status lift_travels(iso_paths *out, lift_task *task) ISO_MUST_CHECK;
+
+#endif

@@ -1,0 +1,197 @@
+/* Travels along a layer, a clearance above it. */
+#include <math.h>
+
+#include "base/vector.h"
+#include "lift/sample.h"
+#include "lift/task.h"
+
+/* Nobody sees how exactly a travel follows the layer: its pieces may be off it by this share of
+ * what it stays above it. */
+static const double coarse = 0.25;
+/* And turn by so much more. */
+static const double wide_turn = 2;
+/* The layer is off a chord by as much as the slopes at its ends tell, but for what they don't: it
+ * is passed by so much more. */
+static const double doubt = 1.3;
+
+/* A travel that is to be sampled: from where the nozzle is to the first vertex of a path. */
+typedef struct way {
+    int32_t path;
+    iso_point from;
+} way;
+
+typedef struct travels {
+    lift_task *task;
+    iso_paths *out;
+    sample_limits limits;
+    const way *ways;
+} travels;
+
+static iso_vec2 to_mm(iso_point p) {
+    return (iso_vec2){iso_mm(p.x), iso_mm(p.y)};
+}
+
+static iso_status grow(iso_paths *out, int64_t more) {
+    int64_t count = out->travel_count + more;
+    if (count > INT32_MAX - 1)
+        return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 turns of travels is too much");
+    ISO_TRY(ISO_GROW(out->travel, out->travel_capacity, count));
+    return ISO_GROW(out->travel_frame, out->travel_frame_capacity, count);
+}
+
+static void put(iso_paths *out, const lift_task *t, iso_vec3 at, const chart_point *on) {
+    out->travel[out->travel_count] = (iso_point){iso_units(at.x), iso_units(at.y)};
+    out->travel_frame[out->travel_count++] =
+        (iso_frame){.normal = on->normal,
+                    .height = iso_units(t->options->thickness * on->thickness),
+                    .z = iso_units(at.z - t->options->z)};
+}
+
+/* `height` mm above the layer. Upwards where layers are heights: so x and y stay what they are on
+ * the way there. Outside the part a layer may lie lower than the bed, the nozzle may not. */
+static iso_vec3 above(const lift_task *t, const chart_point *on, double height) {
+    iso_vec3 at = on->at;
+    if (chart_kind_of(t->chart) != CHART_GRAPH)
+        return vec3_along(at, height, on->normal);
+    at.z = fmax(at.z, 0) + height / on->normal.z;
+    return at;
+}
+
+/* By how much the layer stands above the chords at a sample. */
+static double bump_at(const samples *s, int64_t i, int64_t begin) {
+    double before = i > begin ? sample_rise(&s->point[i - 1], &s->point[i]) : 0;
+    double after = !sample_is_last(s, i) ? sample_rise(&s->point[i], &s->point[i + 1]) : 0;
+    return doubt * fmax(0, fmax(before, after));
+}
+
+/* ---- near ways ---- */
+
+/* As without layers that bend: straight from bead to bead. `from` and `to` are samples. */
+static bool is_near(const lift_task *t, int64_t from, int64_t to) {
+    const chart_point *a = &t->samples.point[from], *b = &t->samples.point[to];
+    double most = t->options->near;
+    iso_vec3 chord = vec3_minus(b->at, a->at);
+    return vec3_dot(chord, chord) <= most * most && sample_rise(a, b) <= t->options->tolerance &&
+           vec3_dot(a->normal, b->normal) > 0.5;
+}
+
+static iso_status put_near(iso_paths *out, const lift_task *t, iso_path *path, int64_t to) {
+    ISO_TRY(grow(out, 1));
+    path->travel_first = out->travel_count;
+    path->travel_count = 1;
+    put(out, t, t->samples.point[to].at, &t->samples.point[to]);
+    return ISO_OK;
+}
+
+/* ---- the others ---- */
+
+static iso_status lay_ways(samples *s, const travels *t, int32_t first, int32_t end) {
+    const iso_paths *flat = t->task->flat;
+    int64_t count = 0, n = 0;
+    for (int32_t w = first; w < end; w++)
+        count += flat->path[t->ways[w].path].travel_count + 2;
+    ISO_TRY(ISO_PUSH(s->flat, t->task->arena, count));
+    ISO_TRY(ISO_PUSH(s->owner, t->task->arena, count));
+    for (int32_t w = first; w < end; w++) {
+        const iso_path *path = &flat->path[t->ways[w].path];
+        s->flat[n++] = to_mm(t->ways[w].from);
+        for (int32_t i = 0; i < path->travel_count; i++)
+            s->flat[n++] = to_mm(flat->travel[path->travel_first + i]);
+        s->flat[n++] = to_mm(flat->vertex[path->first].at);
+        for (int64_t i = n - path->travel_count - 2; i < n; i++)
+            s->owner[i] = w;
+        s->owner[n - 1] = ~w;
+    }
+    s->count = n;
+    return ISO_OK;
+}
+
+static iso_status put_ways(const travels *t, const samples *s) {
+    int64_t begin = 0;
+    ISO_TRY(grow(t->out, s->count));
+    for (int64_t i = 0; i < s->count; i++) {
+        int32_t owner = s->owner[i];
+        iso_path *path = &t->out->path[t->ways[owner < 0 ? ~owner : owner].path];
+        double height = t->task->options->clearance + bump_at(s, i, begin);
+        if (i == begin)
+            path->travel_first = t->out->travel_count;
+        put(t->out, t->task, above(t->task, &s->point[i], height), &s->point[i]);
+        path->travel_count = t->out->travel_count - path->travel_first;
+        if (sample_is_last(s, i))
+            begin = i + 1;
+    }
+    return ISO_OK;
+}
+
+/* All at once. Where that fails as one leads where there is no layer, each half by itself, down to
+ * the one that isn't known then. */
+static iso_status make_ways(const travels *t, int32_t first, int32_t end) {
+    iso_arena *arena = t->task->arena;
+    iso_arena_mark mark = iso_arena_get_mark(arena);
+    samples s;
+    if (first == end)
+        return ISO_OK;
+    ISO_TRY(lay_ways(&s, t, first, end));
+    iso_status status = sample_refine(&s, t->task->chart, &t->limits, arena);
+    if (status == ISO_OK)
+        status = put_ways(t, &s);
+    iso_arena_pop(arena, mark);
+    if (status != ISO_OUTSIDE)
+        return status;
+    if (end - first == 1)
+        return ISO_OK;
+    int32_t middle = first + (end - first) / 2;
+    ISO_TRY(make_ways(t, first, middle));
+    return make_ways(t, middle, end);
+}
+
+/* ---- all of them ---- */
+
+/* Where the path's beads begin and end among the samples. */
+typedef struct span {
+    int64_t begin, end;
+} span;
+
+static span span_from(const samples *s, int64_t begin) {
+    int64_t end = begin;
+    while (!sample_is_last(s, end))
+        end++;
+    return (span){begin, end};
+}
+
+/* Near ways are put down, what is left goes to `ways`. */
+static iso_status choose_ways(way *ways, int32_t *count, iso_paths *out, const lift_task *t) {
+    const iso_paths *flat = t->flat;
+    const iso_point *from = t->options->from;
+    int64_t sample = 0, before = -1;
+    *count = 0;
+    for (int32_t p = 0; p < flat->count; p++) {
+        const iso_path *path = &flat->path[p];
+        if (path->count == 0)
+            continue;
+        if (before >= 0 && path->travel_count == 0 && is_near(t, before, sample))
+            ISO_TRY(put_near(out, t, &out->path[p], sample));
+        else if (from)
+            ways[(*count)++] = (way){p, *from};
+        span of = span_from(&t->samples, sample);
+        before = of.end;
+        sample = of.end + 1;
+        from = &flat->vertex[path->first + (path->closed ? 0 : path->count - 1)].at;
+    }
+    return ISO_OK;
+}
+
+iso_status lift_travels(iso_paths *out, lift_task *task) {
+    const lift_options *o = task->options;
+    travels t = {.task = task, .out = out, .limits = task->limits};
+    way *ways;
+    int32_t count;
+    t.limits.tolerance = fmax(o->tolerance, coarse * o->clearance);
+    t.limits.turn = wide_turn * o->turn;
+    t.limits.share = 0;
+    t.limits.layer[1] = 0;
+    ISO_TRY(ISO_PUSH(ways, task->arena, task->flat->count));
+    ISO_TRY(choose_ways(ways, &count, out, task));
+    t.ways = ways;
+    return make_ways(&t, 0, count);
+}
