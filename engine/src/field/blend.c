@@ -72,14 +72,17 @@ static part curved_part(const blend_field *f, iso_vec3 low, iso_vec3 high) {
 
 /* How far the curved field is above z. The two go along with each other: what is known of the
  * difference's slopes narrows it. */
+static interval above_at(const void *context, iso_vec3 at) {
+    return interval_subtract(curved_part(context, at, at).value, interval_at(at.z));
+}
+
 static interval above_flat(const blend_field *f, const part *curved, iso_vec3 low, iso_vec3 high) {
-    iso_vec3 middle = vec3_between(low, high, 0.5);
-    part at = curved_part(f, middle, middle), wide = *curved;
+    part wide = *curved;
     wide.value = interval_subtract(curved->value, (interval){low.z, high.z});
     wide.gradient[2] = interval_subtract(curved->gradient[2], interval_at(1));
     iso_field_bound bound;
     field_bound_set(&bound, wide.value, wide.gradient);
-    field_bound_narrow(&bound, interval_subtract(at.value, interval_at(middle.z)), low, high);
+    field_bound_narrow(&bound, above_at, f, low, high);
     return (interval){bound.low, bound.high};
 }
 
@@ -111,32 +114,29 @@ static void join(part *to, part other) {
 }
 
 /* The box in up to three parts: flat, between and curved. */
+static part part_over(const blend_field *f, iso_vec3 low, iso_vec3 high) {
+    part all = {{HUGE_VAL, -HUGE_VAL},
+                {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};
+    if (low.z <= f->from)
+        join(&all, (part){{low.z, fmin(high.z, f->from)}, {{0, 0}, {0, 0}, {1, 1}}});
+    if (high.z > f->from && low.z < f->to)
+        join(&all, mixed_part(f, vec3(low.x, low.y, fmax(low.z, f->from)),
+                              vec3(high.x, high.y, fmin(high.z, f->to))));
+    if (high.z >= f->to)
+        join(&all, curved_part(f, vec3(low.x, low.y, fmax(low.z, f->to)), high));
+    return all;
+}
+
+static interval value_at(const void *context, iso_vec3 at) {
+    return part_over(context, at, at).value;
+}
+
 static void bound(iso_field_bound *bound, const iso_field *field, iso_vec3 low, iso_vec3 high) {
     const blend_field *f = blend_of(field);
-    part all;
-    bool any = false;
-    if (low.z <= f->from) {
-        all = (part){{low.z, fmin(high.z, f->from)}, {{0, 0}, {0, 0}, {1, 1}}};
-        any = true;
-    }
-    if (high.z > f->from && low.z < f->to) {
-        iso_vec3 a = {low.x, low.y, fmax(low.z, f->from)},
-                 b = {high.x, high.y, fmin(high.z, f->to)};
-        part p = mixed_part(f, a, b);
-        if (any)
-            join(&all, p);
-        else
-            all = p;
-        any = true;
-    }
-    if (high.z >= f->to) {
-        part p = curved_part(f, vec3(low.x, low.y, fmax(low.z, f->to)), high);
-        if (any)
-            join(&all, p);
-        else
-            all = p;
-    }
+    part all = part_over(f, low, high);
     field_bound_set(bound, all.value, all.gradient);
+    if (high.z > f->from && low.z < f->to)
+        field_bound_narrow(bound, value_at, f, low, high);
 }
 
 /* ---- making ---- */

@@ -20,45 +20,22 @@ static void evaluate(double *value, iso_vec3 *gradient, const iso_field *field, 
     formula_evaluate(value, gradient, formula_of(field), at, count);
 }
 
-/* By steps of intervals alone a bound is wide where parts of the expression move together. The
- * slopes know better: what only rises is least at an end, and what does neither is as far from its
- * middle as its steepest slope takes it.
- *
- * Returns how high the value gets in the box, or, for sign -1, how high its negative gets. Four
- * times its width at one point is more than what rounding does to it anywhere in the box. */
-static double highest(const iso_formula *formula, const interval box[3], const interval slope[3],
-                      double sign) {
-    interval at[3];
-    double reach = 0;
-    for (int c = 0; c < 3; c++) {
-        double low = sign > 0 ? slope[c].low : -slope[c].high;
-        double high = sign > 0 ? slope[c].high : -slope[c].low;
-        double size = box[c].high - box[c].low;
-        at[c] = interval_at(low >= 0    ? box[c].high
-                            : high <= 0 ? box[c].low
-                                        : box[c].low + 0.5 * size);
-        if (low < 0 && high > 0 && size > 0)
-            reach += 0.5 * size * fmax(-low, high);
-    }
+static interval value_at(const void *context, iso_vec3 at) {
+    interval box[3];
     spread there;
-    formula_spread(&there, formula, at, 0);
-    interval value = sign > 0 ? there.value : interval_negate(there.value);
-    double top = value.high + 4 * (value.high - value.low) + reach * (1 + 0x1p-48);
-    return top < HUGE_VAL ? top : HUGE_VAL;
+    field_box(box, at, at);
+    formula_spread(&there, context, box, 0);
+    return there.value;
 }
 
+/* By steps of intervals alone a bound is wide where parts of the expression move together. */
 static void bound(iso_field_bound *bound, const iso_field *field, iso_vec3 low, iso_vec3 high) {
-    const iso_formula *formula = formula_of(field);
     interval box[3];
     spread all;
     field_box(box, low, high);
-    formula_spread(&all, formula, box, 3);
-    if (interval_is_finite(all.value)) {
-        interval narrow = {-highest(formula, box, all.slope, -1),
-                           highest(formula, box, all.slope, 1)};
-        all.value = interval_both(all.value, narrow);
-    }
+    formula_spread(&all, formula_of(field), box, SPREAD_SLOPES);
     field_bound_set(bound, all.value, all.slope);
+    field_bound_narrow(bound, value_at, formula_of(field), low, high);
 }
 
 static void free_field(iso_field *field) {

@@ -1,6 +1,7 @@
 /* What all fields have, whatever their kind. */
 #include "field/field.h"
 
+#include <math.h>
 #include <stddef.h>
 
 void iso_field_free(iso_field *field) {
@@ -47,21 +48,41 @@ void field_bound_set(iso_field_bound *bound, interval value, const interval grad
     };
 }
 
-static double steepest(double low, double high) {
-    return -low > high ? -low : high;
+/* How high the value gets in the box, or, for sign -1, how high its negative gets. Four times its
+ * width at one point is more than what rounding does to it anywhere in the box.
+ *
+ * The mean value theorem, which holds for kinks too as long as the slopes next to them are known.
+ */
+static double highest(field_value_at *value_at, const void *context, const interval box[3],
+                      const interval slope[3], double sign) {
+    double at[3], reach = 0;
+    for (int c = 0; c < 3; c++) {
+        double low = sign > 0 ? slope[c].low : -slope[c].high;
+        double high = sign > 0 ? slope[c].high : -slope[c].low;
+        double size = box[c].high - box[c].low;
+        at[c] = low >= 0 ? box[c].high : high <= 0 ? box[c].low : box[c].low + 0.5 * size;
+        if (low < 0 && high > 0 && size > 0)
+            reach += 0.5 * size * fmax(-low, high);
+    }
+    interval value = value_at(context, (iso_vec3){at[0], at[1], at[2]});
+    if (sign < 0)
+        value = interval_negate(value);
+    double top = value.high + 4 * (value.high - value.low) + reach * (1 + 0x1p-48);
+    return top < HUGE_VAL ? top : HUGE_VAL;
 }
 
-/* The mean value theorem, which holds for kinks too as long as slopes at them are bounded by those
- * beside. */
-void field_bound_narrow(iso_field_bound *bound, interval middle, iso_vec3 low, iso_vec3 high) {
-    if (!(bound->low > -HUGE_VAL && bound->high < HUGE_VAL))
+void field_bound_narrow(iso_field_bound *bound, field_value_at *value_at, const void *context,
+                        iso_vec3 low, iso_vec3 high) {
+    interval value = {bound->low, bound->high}, box[3];
+    if (!interval_is_finite(value))
         return;
-    double reach = (high.x - low.x) * steepest(bound->gradient_low.x, bound->gradient_high.x) +
-                   (high.y - low.y) * steepest(bound->gradient_low.y, bound->gradient_high.y) +
-                   (high.z - low.z) * steepest(bound->gradient_low.z, bound->gradient_high.z);
-    reach *= 0.5 * (1 + 0x1p-48);
-    interval both = interval_both((interval){bound->low, bound->high},
-                                  interval_rounded(middle.low - reach, middle.high + reach));
-    bound->low = both.low;
-    bound->high = both.high;
+    field_box(box, low, high);
+    const interval slope[3] = {{bound->gradient_low.x, bound->gradient_high.x},
+                               {bound->gradient_low.y, bound->gradient_high.y},
+                               {bound->gradient_low.z, bound->gradient_high.z}};
+    interval narrow = {-highest(value_at, context, box, slope, -1),
+                       highest(value_at, context, box, slope, 1)};
+    value = interval_both(value, narrow);
+    bound->low = value.low;
+    bound->high = value.high;
 }

@@ -28,9 +28,13 @@ static inline void field_box(interval box[3], iso_vec3 low, iso_vec3 high) {
     box[2] = (interval){low.z, high.z};
 }
 void field_bound_set(iso_field_bound *bound, interval value, const interval gradient[3]);
-/* Narrow a bound of what doesn't jump: over the box it is no further from `middle`, what it is in
- * the box's middle, than the slopes say. */
-void field_bound_narrow(iso_field_bound *bound, interval middle, iso_vec3 low, iso_vec3 high);
+
+/* What a value is at one point, for certain: about as wide as rounding makes it. */
+typedef interval field_value_at(const void *context, iso_vec3 at);
+/* Narrow a bound by its slopes: what only rises is greatest at an end, and what does neither is no
+ * further from its middle than its steepest slope takes it. Costs two values. */
+void field_bound_narrow(iso_field_bound *bound, field_value_at *value_at, const void *context,
+                        iso_vec3 low, iso_vec3 high);
 
 /* What charts ask of the kinds that have their own (chart/). */
 typedef struct field_shape {

@@ -97,11 +97,13 @@ static void run_steps(const run *r, bool with_slopes, bool with_constants) {
     }
 }
 
-static void lay_out(run *r, double *room, bool with_slopes) {
+static void lay_out(run *r, double *room, bool with_slopes, int64_t count) {
     int32_t registers = r->formula->registers;
     int32_t arrays =
         FORMULA_VARIABLES + registers + (with_slopes ? 3 * registers + OPERATION_OPERANDS + 1 : 0);
     r->block = FORMULA_ROOM / arrays < FORMULA_BLOCK ? FORMULA_ROOM / arrays : FORMULA_BLOCK;
+    if (count < r->block)
+        r->block = (int32_t)count;
     for (int32_t k = 0; k < FORMULA_VARIABLES + registers; k++, room += r->block)
         r->value[k] = room;
     if (!with_slopes)
@@ -132,7 +134,7 @@ void formula_evaluate(double *value, iso_vec3 *gradient, const iso_formula *form
                       const iso_vec3 *at, int64_t count) {
     double room[FORMULA_ROOM];
     run r = {.formula = formula};
-    lay_out(&r, room, gradient != NULL);
+    lay_out(&r, room, gradient != NULL, count);
     for (int64_t first = 0; first < count; first += r.block) {
         r.count = count - first < r.block ? (int32_t)(count - first) : r.block;
         for (int32_t i = 0; i < r.count; i++) {

@@ -71,36 +71,22 @@ static bool is_anywhere(interval a) {
     return !(a.low > -1e6 && a.high < 1e6 && a.high - a.low < 6.2);
 }
 
-interval interval_sine(interval a) {
-    if (!interval_is_finite(a))
-        return interval_whole();
-    if (is_anywhere(a))
-        return (interval){-1, 1};
-    double s, t, unused;
-    series_sine_cosine(&s, &unused, a.low);
-    series_sine_cosine(&t, &unused, a.high);
-    interval c = interval_outward(fmin(s, t), fmax(s, t), series_error);
-    if (c.low < -1 || meets(a, -pi / 2, 2 * pi))
-        c.low = -1;
-    if (c.high > 1 || meets(a, pi / 2, 2 * pi))
-        c.high = 1;
-    return c;
+/* Between a and b, but where the greatest or least value is met on the way. */
+static interval wave_between(double a, double b, bool top, bool bottom) {
+    interval c = interval_outward(fmin(a, b), fmax(a, b), series_error);
+    return (interval){bottom || c.low < -1 ? -1 : c.low, top || c.high > 1 ? 1 : c.high};
 }
 
-interval interval_cosine(interval a) {
-    if (!interval_is_finite(a))
-        return interval_whole();
-    if (is_anywhere(a))
-        return (interval){-1, 1};
-    double s, t, unused;
-    series_sine_cosine(&unused, &s, a.low);
-    series_sine_cosine(&unused, &t, a.high);
-    interval c = interval_outward(fmin(s, t), fmax(s, t), series_error);
-    if (c.low < -1 || meets(a, pi, 2 * pi))
-        c.low = -1;
-    if (c.high > 1 || meets(a, 0, 2 * pi))
-        c.high = 1;
-    return c;
+void interval_sine_cosine(interval *sine, interval *cosine, interval a) {
+    if (!interval_is_finite(a) || is_anywhere(a)) {
+        *sine = *cosine = interval_is_finite(a) ? (interval){-1, 1} : interval_whole();
+        return;
+    }
+    double s, t, c, d, turn = 2 * pi;
+    series_sine_cosine(&s, &c, a.low);
+    series_sine_cosine(&t, &d, a.high);
+    *sine = wave_between(s, t, meets(a, 0.5 * pi, turn), meets(a, -0.5 * pi, turn));
+    *cosine = wave_between(c, d, meets(a, 0, turn), meets(a, pi, turn));
 }
 
 /* Seen from outside, a box spans the angle between two of its corners. */

@@ -66,8 +66,7 @@ interval interval_multiply(interval a, interval b);
 interval interval_divide(interval a, interval b);
 interval interval_square(interval a);
 interval interval_sqrt(interval a); /* all there is, if some of it has no root */
-interval interval_sine(interval a);
-interval interval_cosine(interval a);
+void interval_sine_cosine(interval *sine, interval *cosine, interval a);
 /* The angle of (x, y) as series_arctangent2 has it; `jumps`: the points may lie on both sides of
  * where it turns over, or at the origin. */
 interval interval_angle(bool *jumps, interval y, interval x);

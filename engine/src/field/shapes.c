@@ -211,8 +211,9 @@ static void wave_bound(iso_field_bound *bound, const iso_field *field, iso_vec3 
     const shape_field *f = shape_of(field);
     interval x = interval_multiply(interval_at(f->turn.x), (interval){low.x, high.x});
     interval y = interval_multiply(interval_at(f->turn.y), (interval){low.y, high.y});
-    interval angle = interval_add(x, y), cosine = interval_cosine(angle);
-    interval height = interval_multiply(interval_at(f->amplitude), interval_sine(angle));
+    interval sine, cosine;
+    interval_sine_cosine(&sine, &cosine, interval_add(x, y));
+    interval height = interval_multiply(interval_at(f->amplitude), sine);
     interval by_x = interval_rounded(f->amplitude * f->turn.x, f->amplitude * f->turn.x);
     interval by_y = interval_rounded(f->amplitude * f->turn.y, f->amplitude * f->turn.y);
     interval gradient[3] = {interval_multiply(by_x, cosine), interval_multiply(by_y, cosine),

@@ -348,20 +348,22 @@ void spread_sqrt(spread *to, const spread *const *from, int32_t slopes) {
 }
 
 void spread_sin(spread *to, const spread *const *from, int32_t slopes) {
-    interval by = interval_cosine(from[0]->value);
-    to->value = interval_sine(from[0]->value);
-    chain(to, &by, from, 1, slopes);
+    interval cosine;
+    interval_sine_cosine(&to->value, &cosine, from[0]->value);
+    chain(to, &cosine, from, 1, slopes);
 }
 
 void spread_cos(spread *to, const spread *const *from, int32_t slopes) {
-    interval by = interval_negate(interval_sine(from[0]->value));
-    to->value = interval_cosine(from[0]->value);
-    chain(to, &by, from, 1, slopes);
+    interval sine;
+    interval_sine_cosine(&sine, &to->value, from[0]->value);
+    sine = interval_negate(sine);
+    chain(to, &sine, from, 1, slopes);
 }
 
 /* Where the cosine has one sign it rises. */
 void spread_tan(spread *to, const spread *const *from, int32_t slopes) {
-    interval a = from[0]->value, cosine = interval_cosine(a);
+    interval a = from[0]->value, sine, cosine;
+    interval_sine_cosine(&sine, &cosine, a);
     if (!(a.high - a.low < 3) || interval_has(cosine, 0) || !interval_is_finite(cosine)) {
         nothing_known(to, from, 1, slopes);
         return;
