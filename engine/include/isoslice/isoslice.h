@@ -2,6 +2,7 @@
 #ifndef ISOSLICE_ISOSLICE_H
 #define ISOSLICE_ISOSLICE_H
 
+#include <isoslice/channel.h>
 #include <isoslice/config.h>
 #include <isoslice/field.h>
 #include <isoslice/fill.h>

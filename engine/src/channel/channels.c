@@ -1,0 +1,390 @@
+/* From a part to channels: the stages in their order. */
+#include "channel/body.h"
+
+enum { LEVELS_LEAST = 81, LEVELS_MOST = 2000, SAMPLES_LEAST = 100, SAMPLES_MOST = 1000 };
+
+/* Contours a pitch, points of a ring a depth: with fewer, corners are cut off. */
+#define LEVELS_A_PITCH 8
+#define SAMPLES_A_DEPTH 10
+/* Points of a channel a radius of its bends: a circle then has 31 and is 0.2 % too short. */
+#define STEPS_A_BEND 5
+/* Of the depth, to both sides: the surface's slope is the mean of so much. */
+#define SLOPE_REACH 0.25
+
+iso_channel_options iso_channel_defaults(void) {
+    iso_channel_options options = {.pitch = 20,
+                                   .depth = 10,
+                                   .start = -1,
+                                   .mode = ISO_CHANNEL_PLANAR,
+                                   .ports = ISO_CHANNEL_PARALLEL,
+                                   .side = ISO_CHANNEL_FRONT,
+                                   .margin = -1,
+                                   .wall = 2,
+                                   .bend = -1};
+    if (iso_channel_section_parse(&options.section, "round:8", 32) != ISO_OK)
+        options.section.sides = 0; /* can't be; refused as a section then */
+    return options;
+}
+
+void channels_report(const iso_channels *c, double done, const char *stage) {
+    if (c->options.progress)
+        c->options.progress(c->options.payload, done, stage);
+}
+
+// Options
+
+static iso_status check_range(const char *name, double value, double least, double most) {
+    if (value >= least && value <= most)
+        return ISO_OK;
+    return iso_fail(ISO_BAD_CONFIG, "%s: %g is not from %g to %g", name, value, least, most);
+}
+
+static iso_status check_options(const iso_channel_options *o) {
+    ISO_TRY(check_range("pitch", o->pitch, 0.1, 1000));
+    ISO_TRY(check_range("depth", o->depth, 0.1, 1000));
+    ISO_TRY(check_range("start", o->start, -1, 10000));
+    ISO_TRY(check_range("section", o->section.sides, 3, ISO_SECTION_SIDES_MAX));
+    ISO_TRY(check_range("margin", o->margin, -1, 1000));
+    ISO_TRY(check_range("wall", o->wall, 0, 1000));
+    ISO_TRY(check_range("bend", o->bend, -1, 1000));
+    if (o->levels != 0)
+        ISO_TRY(check_range("levels", o->levels, 2, 10000));
+    if (o->samples != 0)
+        ISO_TRY(check_range("samples", o->samples, 8, 10000));
+    ISO_TRY(check_range("mode", (double)o->mode, 0, ISO_CHANNEL_MODE_COUNT - 1));
+    ISO_TRY(check_range("ports", (double)o->ports, 0, ISO_CHANNEL_PORTS_COUNT - 1));
+    ISO_TRY(check_range("side", (double)o->side, 0, ISO_CHANNEL_SIDE_COUNT - 1));
+    double reach = iso_channel_section_reach(&o->section);
+    if (!(o->depth > reach))
+        return iso_fail(ISO_BAD_CONFIG,
+                        "depth: at %g mm a channel that reaches %g mm from its middle would cut "
+                        "into the part",
+                        o->depth, reach);
+    return ISO_OK;
+}
+
+static int32_t between(double number, int32_t least, int32_t most) {
+    return number < least ? least : number > most ? most : (int32_t)number;
+}
+
+static double coordinate(double mm, double by) {
+    return iso_mm(iso_units(mm + by));
+}
+
+/* What was left to be chosen, and the mould's box. */
+static iso_status settle(iso_channels *c) {
+    iso_channel_options *o = &c->options;
+    iso_vec3 low = c->mesh->min, high = c->mesh->max, size = vec3_minus(high, low);
+    double most = iso_mm(ISO_COORDINATE_MAX) / 2;
+    c->reach = iso_channel_section_reach(&o->section);
+    c->start = o->start < 0 ? o->pitch / 2 : o->start;
+    c->bend = o->bend < 0 ? 1.5 * c->reach : fmax(o->bend, 1.01 * c->reach);
+    double margin = o->margin < 0 ? o->depth + c->reach + fmax(o->depth, 1.5 * c->bend) : o->margin;
+    for (const double *x = (double[]){low.x, low.y, low.z, high.x, high.y, high.z}, *end = x + 6;
+         x < end; x++)
+        if (!(fabs(*x) < most))
+            return iso_fail(ISO_OUTSIDE, "the part is farther than %g mm from the origin", most);
+    if (o->levels == 0)
+        o->levels =
+            between(ceil(size.z / o->pitch * LEVELS_A_PITCH) + 1, LEVELS_LEAST, LEVELS_MOST);
+    if (o->samples == 0)
+        o->samples = between(2 * (size.x + size.y) / o->depth * SAMPLES_A_DEPTH, SAMPLES_LEAST,
+                             SAMPLES_MOST);
+    c->figures.box_min =
+        vec3(coordinate(low.x, -margin), coordinate(low.y, -margin), coordinate(low.z, -margin));
+    c->figures.box_max =
+        vec3(coordinate(high.x, margin), coordinate(high.y, margin), coordinate(high.z, margin));
+    static const iso_vec3 out[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
+    c->side = (port_side){.out = out[o->side],
+                          .along = vec3_cross(vec3(0, 0, 1), out[o->side]),
+                          .half = c->reach + 0.6 * o->wall + 0.05,
+                          .axis = o->side < ISO_CHANNEL_FRONT ? 0 : 1};
+    bool far = o->side == ISO_CHANNEL_RIGHT || o->side == ISO_CHANNEL_BACK;
+    c->side.face = vec3_dot(far ? c->figures.box_max : c->figures.box_min, c->side.out);
+    return ISO_OK;
+}
+
+static iso_status plant_part(iso_channels *c) {
+    int64_t darts = 3 * (int64_t)c->mesh->triangle_count;
+    iso_vec3 *corner;
+    ISO_TRY(ISO_ALLOCATE(corner, darts));
+    for (int64_t a = 0; a < darts; a++)
+        corner[a] = c->mesh->position[c->mesh->origin[a]];
+    iso_status status = closest_new(&c->part, corner, c->mesh->triangle_count);
+    iso_release(corner);
+    return status;
+}
+
+// Rings
+
+static iso_status build_towers(iso_channels *c) {
+    tower_options options = {c->options.mode == ISO_CHANNEL_POINTWISE, c->options.holes != 0,
+                             c->options.samples};
+    contours all;
+    channels_report(c, 0, "slice");
+    ISO_TRY(contours_cut_flat(&all, c->mesh, c->options.levels, &c->arena));
+    channels_report(c, 0.2, "towers");
+    return towers_build(&c->tower, &c->tower_count, &all, &options, &c->arena);
+}
+
+static iso_status ring_off(curve *out, iso_channels *c, const tower *t, double f, ring *outline,
+                           iso_arena *arena) {
+    ring_offset offset = {c->options.depth, c->bend / STEPS_A_BEND, c->part};
+    int32_t folds;
+    ISO_TRY(ring_of_tower(outline, t, f, SLOPE_REACH * c->options.depth, arena));
+    ISO_TRY(ring_push_off(out, &folds, outline, &offset));
+    c->figures.folds += folds;
+    return ISO_OK;
+}
+
+static iso_status note_ring(iso_channels *c, int32_t tower_index, double f, const ring *outline) {
+    iso_channel_figures *figures = &c->figures;
+    iso_channel_ring noted = {.tower = tower_index, .channel = figures->channel_count, .height = f};
+    for (int32_t i = 0; i < outline->count; i++) {
+        noted.z += outline->point[i].z / outline->count;
+        noted.length +=
+            vec3_distance(outline->point[i > 0 ? i - 1 : outline->count - 1], outline->point[i]);
+    }
+    ISO_TRY(ISO_GROW(c->ring, c->ring_capacity, figures->ring_count + 1));
+    ISO_TRY(ISO_GROW(c->outline, c->outline_capacity, figures->ring_count + 1));
+    c->ring[figures->ring_count] = noted;
+    c->outline[figures->ring_count++] = *outline;
+    return ISO_OK;
+}
+
+// Channels
+
+/* x of the section is to point off the part: away from the nearest point of the channel's rings. */
+static iso_vec3 off_part(const iso_channels *c, iso_vec3 p) {
+    iso_vec3 found = p;
+    double best = INFINITY;
+    for (int32_t r = 0; r < c->figures.ring_count; r++) {
+        const ring *outline = &c->outline[r];
+        if (c->ring[r].channel != c->figures.channel_count)
+            continue;
+        for (int32_t i = 0; i < outline->count; i++) {
+            double distance = vec3_distance(p, outline->point[i]);
+            if (distance < best)
+                best = distance, found = outline->point[i];
+        }
+    }
+    return vec3_unit(vec3_minus(p, found));
+}
+
+/* The channel takes the curve over, whatever comes of it. */
+static iso_status add_channel(iso_channels *c, curve *line, const double leg[2]) {
+    iso_status status = curve_relax(line, c->bend, c->bend / STEPS_A_BEND, 2);
+    if (status == ISO_OK)
+        status = ISO_GROW(c->channel, c->channel_capacity, c->figures.channel_count + 1);
+    channel made = {.line = *line, .leg = {leg[0], leg[1]}};
+    if (status == ISO_OK) {
+        int32_t middle = line->count / 2;
+        status = sweep(&made.skin, &made.line, &c->options.section, middle,
+                       off_part(c, line->point[middle]), c->side.out, &c->arena);
+    }
+    if (status == ISO_OK)
+        c->channel[c->figures.channel_count++] = made;
+    else
+        curve_free(line);
+    *line = (curve){0};
+    return status;
+}
+
+static iso_status add_ported(iso_channels *c, const curve *way) {
+    curve line;
+    double leg[2];
+    ISO_TRY(route_ports(&line, leg, way, &c->side));
+    return add_channel(c, &line, leg);
+}
+
+static iso_status add_ring(iso_channels *c, curve *pushed) {
+    static const double none[2] = {0, 0};
+    curve way;
+    if (c->options.ports == ISO_CHANNEL_CLOSED)
+        return add_channel(c, pushed, none);
+    ISO_TRY(route_open(&way, pushed, &c->side));
+    iso_status status = add_ported(c, &way);
+    curve_free(&way);
+    return status;
+}
+
+/* Steps of the way from ring to ring, on the part's offset too. */
+enum { STAIRS = 4 };
+
+static iso_status append_stairs(curve *way, iso_channels *c, const tower *t, double f, bool right) {
+    for (int k = 1; k < STAIRS; k++) {
+        iso_arena_mark mark = iso_arena_get_mark(&c->arena);
+        ring outline;
+        curve pushed = {0}, opened = {0};
+        int32_t folds = c->figures.folds;
+        iso_status status =
+            ring_off(&pushed, c, t, f + c->options.pitch * k / STAIRS, &outline, &c->arena);
+        if (status == ISO_OK)
+            status = route_open(&opened, &pushed, &c->side);
+        if (status == ISO_OK)
+            status = curve_add(way, opened.point[right ? 0 : opened.count - 1]);
+        curve_free(&pushed);
+        curve_free(&opened);
+        iso_arena_pop(&c->arena, mark);
+        c->figures.folds = folds;
+        if (status != ISO_OK && status != ISO_NOT_VERIFIED)
+            return status; /* without a place for a step the way goes straight on */
+    }
+    return ISO_OK;
+}
+
+typedef struct series {
+    curve way;
+    int32_t rings;
+    double last; /* height of the last ring */
+} series;
+
+/* There and back: each ring begins at the end where the one below ends. */
+static iso_status add_to_series(iso_channels *c, series *s, const tower *t, double f,
+                                const curve *pushed) {
+    curve opened;
+    bool right = s->rings % 2 == 1; /* where this ring begins */
+    if (s->rings > 0)
+        ISO_TRY(append_stairs(&s->way, c, t, s->last, right));
+    ISO_TRY(route_open(&opened, pushed, &c->side));
+    iso_status status = route_append(&s->way, &opened, !right);
+    curve_free(&opened);
+    s->rings++;
+    s->last = f;
+    return status;
+}
+
+static iso_status add_level(iso_channels *c, int32_t tower_index, double f, series *s) {
+    const tower *t = &c->tower[tower_index];
+    ring outline;
+    curve pushed = {0};
+    ISO_TRY(ring_off(&pushed, c, t, f, &outline, &c->arena));
+    iso_status status = note_ring(c, tower_index, f, &outline);
+    if (status == ISO_OK)
+        status = c->options.ports == ISO_CHANNEL_SERIES ? add_to_series(c, s, t, f, &pushed)
+                                                        : add_ring(c, &pushed);
+    curve_free(&pushed);
+    return status;
+}
+
+/* The first of the levels at `low` or above. */
+static double first_level(const iso_channels *c, double low) {
+    double skipped = ceil((low - c->start) / c->options.pitch - 1e-9);
+    return skipped > 0 ? skipped : 0;
+}
+
+static iso_status add_tower(iso_channels *c, int32_t index) {
+    double low, high;
+    const tower *t = &c->tower[index];
+    const double *top = t->f + (int64_t)t->samples * (t->rings - 1);
+    series s = {0};
+    tower_range(&low, &high, t);
+    iso_status status = ISO_OK;
+    double f = c->start + c->options.pitch * first_level(c, low);
+    for (double k = first_level(c, low); f <= high && status == ISO_OK;) {
+        status = add_level(c, index, f, &s);
+        f = c->start + c->options.pitch * ++k;
+    }
+    bool part_of_it = false;
+    for (int32_t i = 0; i < t->samples; i++)
+        part_of_it |= top[i] >= f;
+    c->figures.incomplete += part_of_it;
+    if (status == ISO_OK && s.rings > 0)
+        status = add_ported(c, &s.way);
+    curve_free(&s.way);
+    return status;
+}
+
+static iso_status add_all(iso_channels *c) {
+    for (int32_t i = 0; i < c->tower_count; i++) {
+        channels_report(c, 0.3 + 0.3 * i / c->tower_count, "channels");
+        ISO_TRY(add_tower(c, i));
+    }
+    if (c->figures.channel_count > 0)
+        return ISO_OK;
+    return iso_fail(ISO_UNSLICEABLE,
+                    "there is no channel: the first would be %g mm up along the surface, which the "
+                    "part, %.4g mm tall, doesn't have all around; a smaller pitch or start does",
+                    c->start, c->mesh->max.z - c->mesh->min.z);
+}
+
+// Figures
+
+static double volume_of(const skin *s) {
+    double six = 0;
+    iso_vec3 o = s->point[0];
+    for (int32_t r = 0; r < (s->closed ? s->rows : s->rows - 1); r++) {
+        const iso_vec3 *a = s->point + (int64_t)s->sides * r;
+        const iso_vec3 *b = s->point + (int64_t)s->sides * ((r + 1) % s->rows);
+        for (int32_t k = 0; k < s->sides; k++) {
+            int32_t m = k + 1 < s->sides ? k + 1 : 0;
+            iso_vec3 p = vec3_minus(a[k], o), q = vec3_minus(a[m], o), u = vec3_minus(b[m], o);
+            six += vec3_dot(p, vec3_cross(q, u)) + vec3_dot(p, vec3_cross(u, vec3_minus(b[k], o)));
+        }
+    }
+    if (!s->closed) { /* the lid at point 0 adds nothing, that at the other end does */
+        const iso_vec3 *b = s->point + (int64_t)s->sides * (s->rows - 1);
+        for (int32_t k = 1; k + 1 < s->sides; k++)
+            six += vec3_dot(vec3_minus(b[0], o),
+                            vec3_cross(vec3_minus(b[k], o), vec3_minus(b[k + 1], o)));
+    }
+    return six / 6;
+}
+
+static iso_status find_figures(iso_channels *c) {
+    iso_channel_figures *f = &c->figures;
+    iso_vec3 size = vec3_minus(f->box_max, f->box_min);
+    f->tower_count = c->tower_count;
+    f->ring = c->ring;
+    for (int32_t i = 0; i < f->channel_count; i++) {
+        f->length += curve_length(&c->channel[i].line);
+        f->volume += volume_of(&c->channel[i].skin);
+    }
+    f->part_volume = iso_mesh_volume(c->mesh);
+    f->mould_volume = size.x * size.y * size.z - f->part_volume - f->volume;
+    ISO_TRY(channels_measure_pitch(c));
+    channels_report(c, 0.85, "walls");
+    return channels_measure_walls(c);
+}
+
+static iso_status build(iso_channels *c) {
+    ISO_TRY(settle(c));
+    ISO_TRY(plant_part(c));
+    ISO_TRY(build_towers(c));
+    ISO_TRY(add_all(c));
+    ISO_TRY(find_figures(c));
+    channels_report(c, 1, "walls");
+    return ISO_OK;
+}
+
+iso_status iso_channels_new(iso_channels **channels, const iso_mesh *mesh,
+                            const iso_channel_options *options) {
+    iso_channels *c;
+    *channels = NULL;
+    ISO_TRY(check_options(options));
+    ISO_TRY(ISO_ALLOCATE(c, 1));
+    *c = (iso_channels){.options = *options, .mesh = mesh};
+    iso_status status = build(c);
+    if (status == ISO_OK)
+        *channels = c;
+    else
+        iso_channels_free(c);
+    return status;
+}
+
+void iso_channels_free(iso_channels *c) {
+    if (!c)
+        return;
+    for (int32_t i = 0; i < c->figures.channel_count; i++)
+        curve_free(&c->channel[i].line);
+    iso_release(c->channel);
+    iso_release(c->ring);
+    iso_release(c->outline);
+    closest_free(c->part);
+    iso_arena_free(&c->arena);
+    iso_release(c);
+}
+
+const iso_channel_figures *iso_channels_figures(const iso_channels *channels) {
+    return &channels->figures;
+}

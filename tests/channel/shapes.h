@@ -1,0 +1,31 @@
+/* Parts made of rings, on which ways along the surface are known. */
+#ifndef TESTS_CHANNEL_SHAPES_H
+#define TESTS_CHANNEL_SHAPES_H
+
+#include <isoslice/mesh.h>
+
+/* A solid with elliptic sections: radius(z) times (stretch_x, stretch_y), moved by slant z in x. */
+typedef struct shape {
+    double (*radius)(double z);
+    double low, high, stretch_x, stretch_y, slant;
+    int sides, rings; /* rings evenly spaced in z */
+} shape;
+
+void shape_mesh(iso_mesh *mesh, const shape *s);
+/* Ring j, side i, as in the mesh. */
+iso_vec3 shape_point(const shape *s, int i, int j);
+
+double cone_radius(double z);       /* 30 at 0, 10 at 40 */
+double sphere_radius(double z);     /* 30, from -25 to 25 */
+double paraboloid_radius(double z); /* z = r^2 / 20 */
+double cylinder_radius(double z);   /* 20 */
+
+/* mm along the surface from the one height to the other. */
+double cone_way(double from, double to);
+double sphere_way(double from, double to);
+double paraboloid_way(double from, double to);
+
+/* A box, by its corners. */
+void box_mesh(iso_mesh *mesh, iso_vec3 low, iso_vec3 high);
+
+#endif
