@@ -65,7 +65,8 @@ typedef struct iso_object {
     int32_t mesh_count;
     iso_mesh *mesh;    /* [mesh_count], owned; what they overlap in counts once */
     iso_vec3 min, max; /* of all of them: min.x = -max.x, min.y = -max.y, about */
-    iso_vec2 origin;   /* mm, where x = y = 0 was in the files */
+    iso_vec2 origin;   /* mm, where x = y = 0 was in the files, */
+    double floor;      /* and z = 0 */
     iso_region hull;   /* seen from above; empty until iso_objects_find_hulls */
     iso_region foot;   /* of what is low; empty until iso_objects_find_feet */
 } iso_object;

@@ -62,6 +62,7 @@ static iso_status add_object(maker *m, iso_mesh *mesh, int32_t count, const char
     iso_vec3 by = {-(object.min.x + object.max.x) / 2, -(object.min.y + object.max.y) / 2,
                    m->options->float_above ? 0 : -object.min.z};
     object.origin = (iso_vec2){-by.x, -by.y};
+    object.floor = -by.z;
     for (int32_t i = 0; i < count; i++)
         iso_mesh_translate(&object.mesh[i], by);
     find_box(&object);
