@@ -331,8 +331,8 @@ void iso_space_rise(iso_head *head) {
 
 static void go_around(iso_head *head, const stand *to) {
     bool first = head->machine ? head->reach < 0 : head->highest == UNKNOWN;
-    int32_t lift = first ? to_micrometres(head->lift) : UP;
-    rise(head, height_around(head, to->z + (lift > UP || first ? lift : UP)));
+    int32_t lift = first && !head->machine ? to_micrometres(head->lift) : UP;
+    rise(head, height_around(head, to->z + lift));
     stand over = *to;
     over.z = to_micrometres(head->z);
     go(head, &over, &(stroke){.feed = head->travel_feed, .comment = "travel"});

@@ -8,10 +8,12 @@
 
 #include "gcode/head.h"
 
-#define SPACE_TOLERANCE 0.005 /* mm that the tip may be off while the axes turn */
-#define SPACE_SAID 0.05       /* share by which width or height change before it is said again */
-#define SPACE_CLEARANCE 1.0   /* mm over all that is printed */
-#define SPACE_TURN 0.966      /* cosine: a travel that turns the part by more goes around it */
+#define SPACE_TOLERANCE                                                                            \
+    0.02                /* mm that the tip may be off the chord while the axes turn: on its way    \
+                         * around a mandrel it is so by as much as the chord is off the arc */
+#define SPACE_SAID 0.05 /* share by which width or height change before it is said again */
+#define SPACE_CLEARANCE 1.0 /* mm over all that is printed */
+#define SPACE_TURN 0.966    /* cosine: a travel that turns the part by more goes around it */
 
 iso_status iso_space_draw(iso_head *head, const iso_paths *paths, const iso_path *path,
                           const double *length, const iso_layer_pace *pace) ISO_MUST_CHECK;
