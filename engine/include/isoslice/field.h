@@ -75,9 +75,11 @@ ISO_API iso_status iso_field_blend(iso_field **blended, iso_field *field, double
  *     distance:FILE.stl   distance:FILE.vdb   geodesic   auto-top
  *
  * which look at `mesh` ([count], the models of one object) or the file. `slope` is the steepest, in
- * degrees, that layers of auto-top may lie. */
+ * degrees, that layers of auto-top may lie; `origin` is where a file's coordinates have the zero of
+ * the models': what they were moved back by. A surface in a file must be closed. ISO_BAD_CONFIG,
+ * ISO_UNREADABLE, ISO_UNSLICEABLE. */
 ISO_API iso_status iso_field_open(iso_field **field, const char *text, const iso_mesh *mesh,
-                                  int32_t count, double slope) ISO_MUST_CHECK;
+                                  int32_t count, double slope, iso_vec3 origin) ISO_MUST_CHECK;
 ISO_API void iso_field_free(iso_field *field); /* NULL is allowed */
 
 ISO_API iso_field_kind iso_field_kind_of(const iso_field *field);

@@ -15,4 +15,9 @@ iso_status height_geodesic(double *distance, const iso_mesh *mesh, const int32_t
 /* Upwards from each shell's own lowest points, where it is as high as they lie above `foot`. */
 iso_status height_geodesic_rise(double *distance, const iso_mesh *mesh, double foot) ISO_MUST_CHECK;
 
+/* A field's height at each vertex ([vertex_count]); of `geodesic` those measured along that very
+ * model, where it is one of those that the field was opened with. What iso_slice_heights needs: an
+ * ISO_FIELD_GEODESIC is linear in each triangle, and is cut exactly that way. */
+void height_of_vertices(double *height, const iso_field *field, const iso_mesh *mesh);
+
 #endif

@@ -41,6 +41,7 @@ struct iso_closest {
     int32_t leaves; /* number of the first; children of i are 4 i + 1 to 4 i + 4 */
     discs *node;    /* [leaves] */
     flat *flat;     /* [count] by the leaves, of one triangle at most */
+    int32_t *from;  /* [count] which of those given it was */
 };
 
 // One triangle
@@ -219,12 +220,10 @@ static void measure(iso_closest *tree, const iso_vec3 *corner) {
 }
 
 static iso_status fill(iso_closest *tree, const iso_vec3 *corner) {
-    int32_t *from;
+    int32_t *from = tree->from;
     iso_vec3 *ordered;
-    ISO_TRY(ISO_ALLOCATE(from, tree->count));
-    iso_status status = ISO_ALLOCATE(ordered, 3 * tree->count);
-    if (status == ISO_OK)
-        status = halves_order(from, corner, tree->count, 2 * tree->levels);
+    ISO_TRY(ISO_ALLOCATE(ordered, 3 * tree->count));
+    iso_status status = halves_order(from, corner, tree->count, 2 * tree->levels);
     if (status == ISO_OK) {
         for (int64_t i = 0; i < tree->count; i++)
             memcpy(&ordered[3 * i], &corner[3 * (int64_t)from[i]], 3 * sizeof *corner);
@@ -232,7 +231,6 @@ static iso_status fill(iso_closest *tree, const iso_vec3 *corner) {
         make_nodes(tree, ordered);
     }
     iso_release(ordered);
-    iso_release(from);
     return status;
 }
 
@@ -246,6 +244,8 @@ iso_status closest_new(iso_closest **tree, const iso_vec3 *corner, int64_t count
     for (; count > (int64_t)1 << 2 * made->levels; made->levels++)
         made->leaves = WAYS * made->leaves + 1;
     iso_status status = ISO_ALLOCATE(made->flat, count);
+    if (status == ISO_OK)
+        status = ISO_ALLOCATE(made->from, count);
     if (status == ISO_OK)
         status = ISO_ALLOCATE(made->node, made->leaves);
     if (status == ISO_OK && count > 0)
@@ -263,7 +263,12 @@ void closest_free(iso_closest *tree) {
         return;
     iso_release(tree->node);
     iso_release(tree->flat);
+    iso_release(tree->from);
     iso_release(tree);
+}
+
+int32_t closest_number(const iso_closest *tree, int32_t guess) {
+    return tree->from[guess];
 }
 
 // Asking

@@ -17,6 +17,10 @@ void closest_free(iso_closest *tree);
  * triangles may be as thin as they like. */
 double closest_square(const iso_closest *tree, iso_vec3 p, double most, int32_t *guess);
 
+/* The triangle's number, counted as they were given, that a guess, or one that closest_gather
+ * found, stands for. */
+int32_t closest_number(const iso_closest *tree, int32_t guess);
+
 /* Triangles within `reach` of p: how many, or `most` + 1 where there are more than `most`. */
 int closest_gather(int32_t *near, int most, const iso_closest *tree, iso_vec3 p, double reach);
 /* closest_square among those. */
