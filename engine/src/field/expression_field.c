@@ -34,6 +34,9 @@ static void bound(iso_field_bound *bound, const iso_field *field, iso_vec3 low, 
     spread all;
     field_box(box, low, high);
     formula_spread(&all, formula_of(field), box, SPREAD_SLOPES);
+    for (int c = 0; c < SPREAD_SLOPES; c++)
+        if (!interval_is_finite(all.slope[c])) /* what is infinite is given as 0 */
+            all.slope[c] = interval_hull(all.slope[c], interval_at(0));
     field_bound_set(bound, all.value, all.slope);
     field_bound_narrow(bound, value_at, formula_of(field), low, high);
 }

@@ -125,8 +125,9 @@ void spread_power(spread *to, const spread *const *from, int32_t slopes) {
     bool fixed = b.low == b.high;
     if (fixed && floor(b.low) == b.low && fabs(b.low) <= 1024) {
         to->value = whole_power(a, b.low);
-        interval by = interval_multiply(b, whole_power(a, b.low - 1));
-        chain(to, &by, from, 1, slopes);
+        interval by[2] = {interval_multiply(b, whole_power(a, b.low - 1)),
+                          interval_multiply(to->value, positive_log(a))};
+        chain(to, by, from, 2, slopes);
         return;
     }
     if (a.low < 0 || !interval_is_finite(a) || !interval_is_finite(b) ||
@@ -139,7 +140,7 @@ void spread_power(spread *to, const spread *const *from, int32_t slopes) {
     interval by[2] = {interval_multiply(b, a.low > 0 || b.low >= 1 ? general_power(a, less)
                                                                    : (interval){0, HUGE_VAL}),
                       interval_multiply(to->value, positive_log(a))};
-    chain(to, by, from, fixed ? 1 : 2, slopes);
+    chain(to, by, from, 2, slopes);
 }
 
 static void decide(spread *to, const spread *const *from, bool always, bool never, int32_t slopes) {
