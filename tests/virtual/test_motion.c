@@ -33,6 +33,35 @@ static void test_long_line(void) {
     CHECK_NEAR(2. / 40 + 40. / 900, time_of(NULL, "M204 R900\nG1 E-2 F2400"), 1e-12);
 }
 
+/* F counts X, Y and Z; degrees if none of them moves; by G93 it is one over the minutes. */
+static void test_turning(void) {
+    CHECK_NEAR(90. / 100 + 100. / 1500, time_of(NULL, "G1 A90 F6000"), 1e-12);
+    CHECK_NEAR(90. / 100 + 100. / 1500, time_of(NULL, "G1 A-45 F6000\nG1 A-90"), 1e-9);
+    CHECK_NEAR(50. / 100 + 100. / 1500, time_of(NULL, "G1 B30 C-40 F6000"), 1e-12);
+    CHECK_NEAR(200. / 100 + 100. / 1500, time_of(NULL, "G1 X200 C720 F6000"), 1e-12);
+    CHECK_NEAR(2 + 50. / 1500, time_of(NULL, "G93\nG1 X100 A30 F30\nG94"), 1e-12);
+    CHECK_NEAR(2 + 45. / 1500, time_of(NULL, "G93\nG1 A90 E1 F30\nG94\nM204 R900"), 1e-9);
+    CHECK_NEAR(1 + 2. / 500, time_of(NULL, "G93\nG1 Z2 F60\nG94"), 1e-12);
+    fio_virtual_printer *printer = rig_make(NULL, NULL);
+    rig_run(printer, "G28\n" HOT "G92 E0\nG92 A10\nG1 A100 F600\nG91\nG1 A-30 C5\nG90");
+    CHECK_NEAR(70, rig_state(printer).angle[0], 0);
+    CHECK_NEAR(5, rig_state(printer).angle[2], 0);
+    CHECK_NEAR(120, rig_statistics(printer)->turned[0], 0);
+    CHECK_EQUAL(0, rig_statistics(printer)->fault_count);
+    CHECK_EQUAL(0, rig_statistics(printer)->unknown_commands);
+    rig_run(printer, "M83\nG93\nG1 A80 E.1 F60\nG1 A90 E.1 F30\n");
+    CHECK(rig_state(printer).inverse_time);
+    CHECK_EQUAL(2, rig_statistics(printer)->extrusion_moves);
+    CHECK_NEAR(0.2, rig_statistics(printer)->extruded_along_paths, 1e-12);
+    CHECK_EQUAL(0, rig_statistics(printer)->fault_count + rig_statistics(printer)->warning_count);
+    rig_run(printer, "G1 A95");
+    CHECK_EQUAL(1, rig_statistics(printer)->count[FIO_FAULT_BAD_FEEDRATE]);
+    rig_run(printer, "G94\nG1 A96\nG1 X1 B F600");
+    CHECK_EQUAL(1, rig_statistics(printer)->count[FIO_FAULT_BAD_FEEDRATE]);
+    CHECK_EQUAL(1, rig_statistics(printer)->count[FIO_FAULT_BAD_WORD]);
+    fio_virtual_printer_free(printer);
+}
+
 static void test_short_line(void) {
     CHECK_NEAR(2 * sqrt(1. / 1500), time_of(NULL, "G1 X1 F30000"), 1e-12);
     CHECK_NEAR(0, time_of(NULL, "G1 X0 F30000\nG1 F600"), 0);
@@ -193,6 +222,7 @@ static void test_arc_ends_exactly(void) {
 
 int main(void) {
     RUN(test_long_line);
+    RUN(test_turning);
     RUN(test_short_line);
     RUN(test_collinear_lines_join);
     RUN(test_lookahead_bounds_the_speed);

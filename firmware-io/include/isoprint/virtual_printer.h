@@ -121,6 +121,7 @@ typedef struct fio_statistics {
     double volume;               /* mm³ of `filament` */
     double extrusion_length;     /* mm of paths */
     double travel_length;        /* mm of moves in x, y, z without extrusion */
+    double turned[3];            /* degrees that axes A, B and C went, either way */
     double retracted_length, unretracted_length; /* mm of filament, summed */
     double retracted;                            /* mm still retracted now, of the tool in use */
     double extrusion_minimum[3],
@@ -133,8 +134,10 @@ typedef struct fio_state {
     double time;        /* s since the start: moves still in the planner are not in it */
     double position[4]; /* logical, after all lines given */
     double machine[3];
+    double angle[3]; /* degrees: A, B, C, which turn the part */
     bool homed[3];
     bool inches, absolute, absolute_extrusion;
+    bool inverse_time; /* G93 holds: F is one over the minutes of each move */
     bool halted;
     int64_t line_number; /* of the last numbered line */
     double feedrate;     /* mm/s, before feedrate_percent; 0 = none given yet */

@@ -81,6 +81,10 @@ void fio_printer_arc(fio_virtual_printer *printer, const fio_line *line, bool cl
         shape.end[i] = target[i];
     shape.extrusion = extrusion / shape.chords;
     shape.feedrate = fio_printer_feedrate(printer);
+    if (printer->inverse > 0)
+        shape.feedrate =
+            printer->inverse * fabs(shape.angle) * shape.radius * printer->feedrate_percent / 100;
+    printer->inverse = 0;
     shape.next = 1;
     printer->arc = shape;
     fio_printer_next_chord(printer);

@@ -9,7 +9,7 @@
 
 static void move(fio_virtual_printer *printer, const fio_line *line) {
     fio_statistics *statistics = &printer->statistics;
-    double path = statistics->extrusion_length, target[3];
+    double path = statistics->extruded_along_paths, target[3];
     if (line->code >= 2) {
         fio_printer_arc(printer, line, line->code == 2);
     } else {
@@ -17,10 +17,10 @@ static void move(fio_virtual_printer *printer, const fio_line *line) {
         fio_printer_move(printer, target, extrusion, fio_printer_feedrate(printer));
     }
     statistics->moves++;
-    if (statistics->extrusion_length == path)
+    if (statistics->extruded_along_paths == path)
         return;
     statistics->extrusion_moves++;
-    if (printer->feedrate == 0)
+    if (printer->feedrate == 0 && !printer->inverse_time)
         fio_printer_event(printer, FIO_FAULT_NO_FEEDRATE, "extruding before any F was given");
 }
 
@@ -84,6 +84,9 @@ static void set_position(fio_virtual_printer *printer, const fio_line *line) {
         if (fio_line_has(line, (char)('X' + i)))
             printer->offset[i] =
                 fio_line_value(line, (char)('X' + i)) * printer->unit_length - printer->machine[i];
+    for (int i = 0; i < 3 && line->subcode == 0; i++)
+        if (fio_line_has(line, (char)('A' + i)))
+            printer->angle[i] = fio_line_value(line, (char)('A' + i));
     if (line->subcode == 0 && fio_line_has(line, 'E'))
         printer->e = fio_line_value(line, 'E') * printer->unit_length;
 }
@@ -311,6 +314,10 @@ static bool execute_g(fio_virtual_printer *printer, const fio_line *line) {
         return true;
     case 92:
         set_position(printer, line);
+        return true;
+    case 93:
+    case 94:
+        printer->inverse_time = line->code == 93;
         return true;
     default:
         return false;

@@ -140,10 +140,41 @@ double fio_printer_feedrate(const fio_virtual_printer *printer) {
     return feedrate * printer->feedrate_percent / 100;
 }
 
+/* A, B and C: degrees, whatever the unit of length is. */
+static void read_turn(fio_virtual_printer *printer, const fio_line *line) {
+    double squared = 0, largest = 0;
+    for (int i = 0; i < 3; i++) {
+        if (!fio_line_has(line, (char)('A' + i)))
+            continue;
+        double value = fio_line_value(line, (char)('A' + i));
+        double by = printer->absolute ? value - printer->angle[i] : value;
+        printer->angle[i] += by;
+        printer->statistics.turned[i] += fabs(by);
+        squared += by * by;
+        largest = fabs(by) > fabs(largest) ? by : largest;
+    }
+    printer->turn = copysign(sqrt(squared), largest);
+}
+
+/* With G93 each line needs its own. */
+static void read_feedrate(fio_virtual_printer *printer, const fio_line *line) {
+    bool given = fio_line_has(line, 'F');
+    double value = given ? fio_line_value(line, 'F') / 60 : 0;
+    if (printer->inverse_time)
+        printer->inverse = value > 0 ? value : 0;
+    else if (value > 0)
+        printer->feedrate = value * printer->unit_length;
+    if (value > 0 || (!given && !printer->inverse_time))
+        return;
+    fio_printer_event(printer, FIO_FAULT_BAD_FEEDRATE,
+                      given ? "a feedrate that is not positive" : "no F, and G93 holds");
+}
+
 double fio_printer_target(fio_virtual_printer *printer, const fio_line *line, double target[3]) {
     static const uint32_t coordinates = 1u << ('X' - 'A') | 1u << ('Y' - 'A') | 1u << ('Z' - 'A') |
                                         1u << ('E' - 'A') | 1u << ('F' - 'A') | 1u << ('I' - 'A') |
-                                        1u << ('J' - 'A') | 1u << ('R' - 'A');
+                                        1u << ('J' - 'A') | 1u << ('R' - 'A') | 1u << ('A' - 'A') |
+                                        1u << ('B' - 'A') | 1u << ('C' - 'A');
     if (line->stray >= 0)
         fio_printer_event_value(printer, FIO_FAULT_BAD_WORD,
                                 "a byte that belongs to no word: ", line->stray, "");
@@ -156,13 +187,8 @@ double fio_printer_target(fio_virtual_printer *printer, const fio_line *line, do
         double value = fio_line_value(line, (char)('X' + i)) * printer->unit_length;
         target[i] = printer->absolute ? value - printer->offset[i] : target[i] + value;
     }
-    if (fio_line_has(line, 'F')) {
-        double feedrate = fio_line_value(line, 'F') * printer->unit_length / 60;
-        if (feedrate > 0)
-            printer->feedrate = feedrate;
-        else
-            fio_printer_event(printer, FIO_FAULT_BAD_FEEDRATE, "a feedrate that is not positive");
-    }
+    read_turn(printer, line);
+    read_feedrate(printer, line);
     if (!fio_line_has(line, 'E'))
         return 0;
     double value = fio_line_value(line, 'E') * printer->unit_length;
@@ -226,7 +252,7 @@ static void count_filament(fio_virtual_printer *printer, double extrusion, bool 
                                     " mm of filament are retracted");
     }
     /* Priming before the first path is usual; later it is a blob. */
-    bool printing = statistics->extrusion_length > 0;
+    bool printing = statistics->extruded_along_paths > 0;
     if (!along_path && printing && extrusion > before + RETRACTED_TOLERANCE)
         fio_printer_event_value(printer, FIO_WARNING_OVERPRIMED,
                                 "pushed in place: ", extrusion - before,
@@ -241,10 +267,9 @@ static void count_filament(fio_virtual_printer *printer, double extrusion, bool 
 }
 
 static void count_path(fio_virtual_printer *printer, const double end[3], double length,
-                       double flow) {
+                       double flow, bool first) {
     fio_statistics *statistics = &printer->statistics;
     const double *start = printer->machine;
-    bool first = statistics->extrusion_length == 0;
     statistics->extrusion_length += length;
     for (int i = 0; i < 3; i++) {
         double low = start[i] < end[i] ? start[i] : end[i];
@@ -277,15 +302,29 @@ void fio_printer_move(fio_virtual_printer *printer, const double target[3], doub
     extrusion *= printer->flow_percent / 100;
     if (extrusion != 0)
         extrusion = allowed(printer, extrusion);
-    double delta[4], nominal = 0;
-    for (int i = 0; i < 3; i++)
+    double delta[5], nominal = 0, squared = 0;
+    for (int i = 0; i < 3; i++) {
         delta[i] = end[i] - printer->machine[i];
+        squared += delta[i] * delta[i];
+    }
     delta[3] = extrusion;
+    delta[4] = printer->turn;
+    printer->turn = 0;
+    if (printer->inverse > 0) {
+        double length = squared >= 1e-16 ? sqrt(squared)
+                        : delta[4] != 0  ? fabs(delta[4])
+                                         : fabs(extrusion);
+        feedrate = printer->inverse * length * printer->feedrate_percent / 100;
+        printer->inverse = 0;
+    }
     bool planned = fio_planner_add(&printer->planner, &printer->limits, delta, feedrate, &nominal);
     if (planned) {
         fio_block *block = fio_planner_newest(&printer->planner);
-        bool level = delta[0] != 0 || delta[1] != 0, moves = level || delta[2] != 0;
+        bool level = delta[0] != 0 || delta[1] != 0 || delta[4] != 0;
+        bool moves = level || delta[2] != 0;
         bool along_path = extrusion > 0 && moves;
+        bool first = statistics->extruded_along_paths == 0;
+        double mm = squared >= 1e-16 ? block->length : 0; /* nobody knows the part's radius */
         block->sequence = printer->sequence;
         memcpy(block->start, printer->machine, sizeof block->start);
         memcpy(block->end, end, sizeof end);
@@ -300,10 +339,10 @@ void fio_printer_move(fio_virtual_printer *printer, const double target[3], doub
         if (extrusion != 0)
             count_filament(printer, extrusion, along_path);
         if (along_path)
-            count_path(printer, end, block->length,
-                       extrusion / block->length * nominal * printer->filament_area);
+            count_path(printer, end, mm,
+                       extrusion / block->length * nominal * printer->filament_area, first);
         else if (moves)
-            statistics->travel_length += block->length;
+            statistics->travel_length += mm;
     }
     memcpy(printer->machine, end, sizeof end);
 }

@@ -27,9 +27,9 @@ static double limit_by_axes(double value, const double direction[4], const doubl
 /* Square of the corner's speed by junction deviation: the corner is rounded by the arc that leaves
  * it by `deviation` at most, and the centripetal acceleration along that arc is limited. */
 static double junction_squared(const fio_planner *planner, const fio_limits *limits,
-                               const fio_block *block, const double direction[4]) {
-    double cosine = 0, turn[4], length = 0; /* cosine of the angle between the two legs */
-    for (int i = 0; i < 4; i++) {
+                               const fio_block *block, const double direction[5]) {
+    double cosine = 0, turn[5], length = 0; /* cosine of the angle between the two legs */
+    for (int i = 0; i < 5; i++) {
         cosine -= planner->direction[i] * direction[i];
         turn[i] = direction[i] - planner->direction[i];
         length += turn[i] * turn[i];
@@ -39,7 +39,7 @@ static double junction_squared(const fio_planner *planner, const fio_limits *lim
     if (length < 1e-12)
         return HUGE_VAL; /* straight on */
     length = sqrt(length);
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 5; i++)
         turn[i] /= length;
     double acceleration = limit_by_axes(block->acceleration, turn, limits->acceleration);
     double half_sine = sqrt(0.5 * (1 - cosine));
@@ -103,25 +103,27 @@ static void look_ahead(fio_planner *planner) {
     }
 }
 
-bool fio_planner_add(fio_planner *planner, const fio_limits *limits, const double delta[4],
+bool fio_planner_add(fio_planner *planner, const fio_limits *limits, const double delta[5],
                      double feedrate, double *nominal) {
     double squared = delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2];
     bool still = squared<1e-16, extrudes = fabs(delta[3])> 1e-9;
-    if (still && !extrudes)
+    bool turns = delta[4] != 0;
+    if (still && !extrudes && !turns)
         return false;
-    double length = still ? fabs(delta[3]) : sqrt(squared);
-    double unit[4], direction[4], norm = 0;
-    for (int i = 0; i < 4; i++) {
+    double length = !still ? sqrt(squared) : turns ? fabs(delta[4]) : fabs(delta[3]);
+    double unit[5], direction[5], norm = 0;
+    for (int i = 0; i < 5; i++) {
         unit[i] = delta[i] / length;
         norm += unit[i] * unit[i];
     }
     norm = 1 / sqrt(norm);
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 5; i++)
         direction[i] = unit[i] * norm;
 
     fio_block block = {.length = length};
     double least = extrudes ? limits->minimum_feedrate : limits->minimum_travel_feedrate;
     block.nominal = limit_by_axes(feedrate > least ? feedrate : least, unit, limits->feedrate);
+    still = still && !turns;
     double acceleration = still      ? limits->retract_acceleration
                           : extrudes ? limits->print_acceleration
                                      : limits->travel_acceleration;
@@ -142,7 +144,7 @@ bool fio_planner_add(fio_planner *planner, const fio_limits *limits, const doubl
     *place = block;
     if (planner->count == 1)
         planner->settled = planner->oldest;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         planner->unit[i] = unit[i];
         planner->direction[i] = direction[i];
     }

@@ -33,8 +33,8 @@ typedef struct fio_planner {
     int capacity, count, oldest;
     int settled;         /* index of the last block whose entry speed no later block can raise */
     bool joined;         /* there is a block before the next one to join to */
-    double unit[4];      /* of that block: delta / length */
-    double direction[4]; /* and its direction in x, y, z, e, normalised */
+    double unit[5];      /* of that block: delta / length */
+    double direction[5]; /* and its direction in x, y, z, e and turning, normalised */
     double nominal, rest;
 } fio_planner;
 
@@ -42,9 +42,10 @@ static inline bool fio_planner_full(const fio_planner *planner) {
     return planner->count == planner->capacity;
 }
 
-/* Add a move of delta (x, y, z, e in mm); not full. Returns false if it has no length. The block's
- * nominal speed, limited by the axes, goes to *nominal. */
-bool fio_planner_add(fio_planner *planner, const fio_limits *limits, const double delta[4],
+/* Add a move of delta (x, y, z, e in mm, turning in degrees); not full. Its length is that of x, y
+ * and z; or the degrees, if none of them moves; or that of e. Returns false if it has none. The
+ * block's nominal speed, limited by the axes, goes to *nominal. */
+bool fio_planner_add(fio_planner *planner, const fio_limits *limits, const double delta[5],
                      double feedrate, double *nominal);
 
 static inline fio_block *fio_planner_newest(fio_planner *planner) {

@@ -99,6 +99,8 @@ static void set_state(fio_virtual_printer *printer) {
     memset(printer->homed, 0, sizeof printer->homed);
     printer->e = printer->feedrate = printer->fan = printer->firmware_retracted = 0;
     printer->unit_length = 1;
+    printer->inverse_time = false;
+    printer->inverse = printer->turn = 0;
     printer->absolute = printer->absolute_extrusion = printer->end_stops = true;
     printer->allow_cold = printer->halted = false;
     printer->feedrate_percent = printer->flow_percent = 100;
@@ -300,6 +302,7 @@ void fio_virtual_printer_state(const fio_virtual_printer *printer, fio_state *st
     *state = (fio_state){
         .time = printer->clock,
         .inches = printer->unit_length != 1,
+        .inverse_time = printer->inverse_time,
         .absolute = printer->absolute,
         .absolute_extrusion = printer->absolute_extrusion,
         .halted = printer->halted,
@@ -319,6 +322,7 @@ void fio_virtual_printer_state(const fio_virtual_printer *printer, fio_state *st
     for (int i = 0; i < 3; i++) {
         state->machine[i] = printer->machine[i];
         state->position[i] = printer->machine[i] + printer->offset[i];
+        state->angle[i] = printer->angle[i];
         state->homed[i] = printer->homed[i];
     }
     state->position[3] = printer->e;

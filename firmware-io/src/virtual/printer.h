@@ -39,8 +39,12 @@ struct fio_virtual_printer {
     double machine[3];  /* after all lines read */
     double offset[3];   /* logical = machine + offset */
     double e;           /* logical */
+    double angle[3];    /* degrees: A, B, C, after all lines read */
+    double turn;        /* degrees that the move being read turns the part; its sign is the largest
+                         * one's */
+    double inverse;     /* moves a second that F asks for by G93; 0: the line has none */
     double unit_length; /* 1, or 25.4 after G20 */
-    bool homed[3], absolute, absolute_extrusion, end_stops, halted, finished;
+    bool homed[3], absolute, absolute_extrusion, inverse_time, end_stops, halted, finished;
     bool allow_cold;
     double feedrate, feedrate_percent, flow_percent; /* feedrate 0: none given yet */
     double extrusion_minimum_temperature;
@@ -123,13 +127,13 @@ void fio_printer_drain(fio_virtual_printer *printer);
 void fio_printer_abandon(fio_virtual_printer *printer); /* the planner's moves are never made */
 /* Drain, then let `seconds` pass. */
 void fio_printer_wait(fio_virtual_printer *printer, double seconds, fio_activity activity);
-/* Move to machine coordinates and by `extrusion` (before flow_percent), clamped, planned, counted.
- */
+/* Move to machine coordinates and by `extrusion` (before flow_percent), clamped, planned, counted;
+ * the part turns as the line being read has it. */
 void fio_printer_move(fio_virtual_printer *printer, const double target[3], double extrusion,
                       double feedrate);
 void fio_printer_home(fio_virtual_printer *printer, const bool axes[3]);
 
-/* Read X Y Z E F: the machine target and the extrusion; tells of bad words. */
+/* Read X Y Z E F and A B C: the machine target and the extrusion; tells of bad words. */
 double fio_printer_target(fio_virtual_printer *printer, const fio_line *line, double target[3]);
 double fio_printer_feedrate(const fio_virtual_printer *printer); /* mm/s now */
 
