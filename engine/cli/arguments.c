@@ -13,7 +13,8 @@ enum {
     C = 1 << ISO_VERB_CONTOURS,
     I = 1 << ISO_VERB_INFO,
     P = 1 << ISO_VERB_PREVIEW,
-    L = 1 << ISO_VERB_LATTICE
+    L = 1 << ISO_VERB_LATTICE,
+    H = 1 << ISO_VERB_CHANNELS
 };
 
 typedef enum flag_number {
@@ -38,7 +39,8 @@ const iso_flag_info *iso_flag_at(int i) {
 }
 
 const char *iso_verb_name(iso_verb verb) {
-    static const char *const name[] = {"slice", "contours", "info", "preview", "lattice"};
+    static const char *const name[] = {"slice",   "contours", "info",
+                                       "preview", "lattice",  "channels"};
     return name[verb];
 }
 
@@ -272,11 +274,85 @@ static iso_status read_switch(iso_arguments *arguments, const argument *given) {
     case FLAG_quiet:
         arguments->quiet = on;
         break;
+    case FLAG_holes:
+        arguments->channels.holes = on;
+        break;
     }
     return ISO_OK;
 }
 
+/* One of `count` words. */
+static iso_status read_word(int *choice, const argument *given, const char *const *word,
+                            int count) {
+    char all[128] = "";
+    for (int i = 0; i < count; i++) {
+        size_t length = strlen(all);
+        if (iso_same_key(word[i], given->value)) {
+            *choice = i;
+            return ISO_OK;
+        }
+        snprintf(all + length, sizeof all - length, "%s%s", i > 0 ? ", " : "", word[i]);
+    }
+    return iso_fail(ISO_USAGE, "%s %.60s: one of %s is due", given->written, given->value, all);
+}
+
+static iso_status read_choice(iso_channel_options *channels, const argument *given) {
+    static const char *const mode[] = {"planar", "pointwise"};
+    static const char *const ports[] = {"none", "parallel", "series"};
+    static const char *const side[] = {"left", "right", "front", "back"};
+    int choice = 0;
+    switch (given->index) {
+    case FLAG_mode:
+        ISO_TRY(read_word(&choice, given, mode, ISO_CHANNEL_MODE_COUNT));
+        channels->mode = (iso_channel_mode)choice;
+        return ISO_OK;
+    case FLAG_ports:
+        ISO_TRY(read_word(&choice, given, ports, ISO_CHANNEL_PORTS_COUNT));
+        channels->ports = (iso_channel_ports)choice;
+        return ISO_OK;
+    default:
+        ISO_TRY(read_word(&choice, given, side, ISO_CHANNEL_SIDE_COUNT));
+        channels->side = (iso_channel_side)choice;
+        return ISO_OK;
+    }
+}
+
+/* Flags of `isoslice channels` that take a value. */
+static iso_status read_channel_flag(iso_arguments *arguments, const argument *given) {
+    iso_channel_options *channels = &arguments->channels;
+    switch (given->index) {
+    case FLAG_section:
+        arguments->section = given->value;
+        return ISO_OK;
+    case FLAG_write:
+        arguments->write = given->value;
+        return ISO_OK;
+    case FLAG_sides:
+        return read_count(&arguments->sides, given, ISO_SECTION_SIDES_MAX);
+    case FLAG_levels:
+        return read_count(&channels->levels, given, 10000);
+    case FLAG_samples:
+        return read_count(&channels->samples, given, 10000);
+    case FLAG_pitch:
+        return read_length(&channels->pitch, given);
+    case FLAG_depth:
+        return read_length(&channels->depth, given);
+    case FLAG_start:
+        return read_length(&channels->start, given);
+    case FLAG_margin:
+        return read_length(&channels->margin, given);
+    case FLAG_wall:
+        return read_length(&channels->wall, given);
+    case FLAG_bend:
+        return read_length(&channels->bend, given);
+    default:
+        return read_choice(channels, given);
+    }
+}
+
 static iso_status read_flag(iso_arguments *arguments, const argument *given) {
+    if (iso_flag_at(given->index)->verbs == H && *iso_flag_at(given->index)->argument)
+        return read_channel_flag(arguments, given);
     switch (given->index) {
     case FLAG_output:
         arguments->output = given->value;
@@ -369,7 +445,10 @@ static iso_status check_verb(const iso_arguments *arguments) {
 }
 
 iso_status iso_arguments_read(iso_arguments *arguments, int argc, char **argv) {
-    *arguments = (iso_arguments){.travels = true, .progress = isatty(STDERR_FILENO) == 1};
+    *arguments = (iso_arguments){.travels = true,
+                                 .progress = isatty(STDERR_FILENO) == 1,
+                                 .channels = iso_channel_defaults(),
+                                 .sides = 32};
     iso_options_defaults(&arguments->options);
     walk along = {.argc = argc, .at = 1, .argv = argv};
     for (int v = 0; v < ISO_VERB_COUNT && argc > 1; v++) {

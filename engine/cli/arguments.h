@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <isoslice/channel.h>
 #include <isoslice/config.h>
 #include <isoslice/status.h>
 
@@ -14,6 +15,7 @@ typedef enum iso_verb {
     ISO_VERB_INFO,
     ISO_VERB_PREVIEW,
     ISO_VERB_LATTICE,
+    ISO_VERB_CHANNELS,
     ISO_VERB_COUNT
 } iso_verb;
 
@@ -54,6 +56,10 @@ typedef struct iso_arguments {
     const char *const *file;
     int32_t file_count, config_count;
     int32_t layer[ISO_LAYERS_MAX], layer_count;
+    iso_channel_options channels; /* but for the section */
+    const char *section;          /* NULL if not given */
+    int32_t sides;                /* of the section */
+    const char *write;            /* NULL if not given */
     iso_options options;
     iso_config_notes notes;
 } iso_arguments;

@@ -62,7 +62,8 @@ static void catch_signals(void) {
 
 static iso_status run(const iso_arguments *arguments) {
     static iso_status (*const verb[])(const iso_arguments *) = {
-        iso_verb_slice, iso_verb_contours, iso_verb_info, iso_verb_preview, iso_verb_lattice};
+        iso_verb_slice,   iso_verb_contours, iso_verb_info,
+        iso_verb_preview, iso_verb_lattice,  iso_verb_channels};
     if (arguments->page != ISO_PAGE_NONE)
         return iso_page_print(arguments);
     return verb[arguments->verb](arguments);

@@ -15,6 +15,7 @@ static const char *const verb_usage[] = {
     "isoslice info [--json] part.stl [more.stl...]",
     "isoslice preview part.gcode [-o part.svg]",
     "isoslice lattice [options] part.stl -o lattice.stl|lattice.vdb|lattice.gcode",
+    "isoslice channels [flags] part.stl -o channels.stl|mould.stl|channels.mlk|channels.svg",
 };
 
 static const char *const verb_help[] = {
@@ -23,6 +24,8 @@ static const char *const verb_help[] = {
     "Say how many triangles a model has, how large it is, and what is wrong with it.",
     "Draw layers of a G-code file as a picture.",
     "Make a model porous: as a mesh, as a volume (OpenVDB) or as G-code, with a report of its pores.",
+    "Lead cooling channels around a part: as bodies, as a mould of the part with channels in it, as a "
+    "link of their middles or as a picture.",
 };
 
 /* Exit codes and what they mean. */
@@ -273,6 +276,7 @@ static void print_man(void) {
     print_roff("isoslice -c printer.ini --layer-height 0.2 part.stl -o part.gcode");
     print_roff("isoslice --arrange --duplicate 3 part.stl lid.stl");
     print_roff("isoslice preview part.gcode --layers 1,20,-1 -o part.svg");
+    print_roff("isoslice channels part.stl --pitch 20 --depth 10 --section round:8 -o mould.stl");
     print_roff("isoslice lattice part.stl --lattice-cell 4 --fill-density 30% -o lattice.stl");
     printf(".fi\n");
 }

@@ -14,6 +14,7 @@ iso_status iso_verb_contours(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_verb_info(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_verb_preview(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_verb_lattice(const iso_arguments *arguments) ISO_MUST_CHECK;
+iso_status iso_verb_channels(const iso_arguments *arguments) ISO_MUST_CHECK;
 
 /* Slice the arguments' files with these options, `cut` taken out of its lattice (NULL: nothing). */
 iso_status iso_slice_files(iso_report *report, const iso_arguments *arguments,

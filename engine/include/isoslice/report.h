@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include <isoslice/channel.h>
 #include <isoslice/config.h>
 #include <isoslice/gcode.h>
 #include <isoslice/mesh.h>
@@ -68,6 +69,8 @@ typedef struct iso_report {
     const iso_porous_figures *lattice; /* of isoslice lattice, borrowed; NULL: there are none */
     const char *lattice_output; /* a constant: "mesh", "distance", "mask", "gcode"; NULL: nothing */
     int64_t lattice_triangles;  /* of the mesh */
+    const iso_channel_figures *channels; /* of isoslice channels, borrowed; NULL: there are none */
+    int64_t channel_triangles;           /* that were written */
     iso_planar_counts kernel;
     iso_gcode_totals print;
     double seconds;          /* of the whole job, on the clock */

@@ -145,12 +145,13 @@ iso_status curve_relax(curve *c, double radius, double step, int32_t fixed) {
         status = relax(&made, &settled, radius, step, fixed);
     }
     if (status == ISO_OK) {
+        bool back = c->closed && !settled; /* a ring would have shrunk to nothing */
         curve_free(c);
-        *c = settled ? made : even;
-        made = settled ? even : made;
-    } else {
-        curve_free(&even);
+        *c = back ? even : made;
+        curve_free(back ? &made : &even);
+        return ISO_OK;
     }
+    curve_free(&even);
     curve_free(&made);
     return status;
 }

@@ -279,6 +279,74 @@ static void write_lattice(iso_json *json, const iso_report *report) {
     iso_json_end(json, '}');
 }
 
+static void write_place(iso_json *json, const char *name, iso_vec3 p) {
+    iso_json_begin(json, name, '[');
+    iso_json_number(json, NULL, p.x);
+    iso_json_number(json, NULL, p.y);
+    iso_json_number(json, NULL, p.z);
+    iso_json_end(json, ']');
+}
+
+/* Left out if there is none, as between the turns of one ring. */
+static void write_wall(iso_json *json, const char *name, const iso_channel_wall *wall) {
+    if (wall->channel < 0)
+        return;
+    iso_json_begin(json, name, '{');
+    iso_json_number(json, "mm", wall->thickness);
+    iso_json_integer(json, "channel", wall->channel + 1);
+    if (wall->other >= 0)
+        iso_json_integer(json, "other", wall->other + 1);
+    write_place(json, "at", wall->at);
+    iso_json_end(json, '}');
+}
+
+static void write_rings(iso_json *json, const iso_channel_figures *f) {
+    iso_json_begin(json, "rings", '[');
+    for (int32_t i = 0; i < f->ring_count; i++) {
+        iso_json_begin(json, NULL, '{');
+        iso_json_integer(json, "tower", f->ring[i].tower + 1);
+        iso_json_integer(json, "channel", f->ring[i].channel + 1);
+        iso_json_number(json, "height_mm", f->ring[i].height);
+        iso_json_number(json, "measured_mm", f->ring[i].mean);
+        iso_json_number(json, "least_mm", f->ring[i].least);
+        iso_json_number(json, "most_mm", f->ring[i].most);
+        iso_json_number(json, "z_mm", f->ring[i].z);
+        iso_json_number(json, "length_mm", f->ring[i].length);
+        iso_json_end(json, '}');
+    }
+    iso_json_end(json, ']');
+}
+
+static void write_channels(iso_json *json, const iso_report *report) {
+    const iso_channel_figures *f = report->channels;
+    if (!f)
+        return;
+    iso_json_begin(json, "channels", '{');
+    iso_json_integer(json, "count", f->channel_count);
+    iso_json_integer(json, "towers", f->tower_count);
+    iso_json_integer(json, "triangles", report->channel_triangles);
+    iso_json_number(json, "pitch_error_total", f->pitch_total);
+    iso_json_number(json, "pitch_error_rms", f->pitch_rms);
+    iso_json_number(json, "pitch_error_max", f->pitch_max);
+    iso_json_number(json, "height_error_rms", f->spread_rms);
+    iso_json_number(json, "length_mm", f->length);
+    iso_json_number(json, "volume_mm3", f->volume);
+    iso_json_number(json, "part_mm3", f->part_volume);
+    iso_json_number(json, "mould_mm3", f->mould_volume);
+    write_place(json, "mould_min", f->box_min);
+    write_place(json, "mould_max", f->box_max);
+    iso_json_number(json, "bend_mm", f->bend);
+    iso_json_integer(json, "bend_channel", f->bend_channel + 1);
+    write_place(json, "bend_at", f->bend_at);
+    write_wall(json, "wall_to_part", &f->to_part);
+    write_wall(json, "wall_between", &f->between);
+    write_wall(json, "wall_outside", &f->outside);
+    iso_json_integer(json, "folds", f->folds);
+    iso_json_integer(json, "incomplete", f->incomplete);
+    write_rings(json, f);
+    iso_json_end(json, '}');
+}
+
 static void write_warnings(iso_json *json, const iso_report *report) {
     iso_json_begin(json, "warnings", '[');
     for (int32_t i = 0; i < report->warning_count; i++) {
@@ -310,6 +378,7 @@ iso_status iso_report_write(const iso_report *report, const iso_options *options
     write_stages(&json, report);
     write_solid(&json, &report->solid);
     write_lattice(&json, report);
+    write_channels(&json, report);
     write_kernel(&json, &report->kernel);
     write_print(&json, &report->print);
     write_warnings(&json, report);
