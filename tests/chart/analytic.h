@@ -49,9 +49,9 @@ static void analytic_free(iso_field *field) {
     }
 
 /* The tip of the cone is rounded a little: its slope is 0 there. */
-ANALYTIC(cone, z + a *sqrt(x *x + y * y), a *x / fmax(sqrt(x * x + y * y), 1e-9),
+ANALYTIC(cone, z + a * sqrt(x * x + y * y), a *x / fmax(sqrt(x * x + y * y), 1e-9),
          a *y / fmax(sqrt(x * x + y * y), 1e-9), 1)
-ANALYTIC(wave, z + a *sin(x / b), a / b *cos(x / b), 0, 1)
+ANALYTIC(wave, z + a * sin(x / b), a / b * cos(x / b), 0, 1)
 ANALYTIC(tilted, (z + a * x) / sqrt(1 + a * a), a / sqrt(1 + a * a), 0, 1 / sqrt(1 + a * a))
 /* Distance from a point at z = -a. */
 ANALYTIC(sphere, sqrt(x *x + y * y + (z + a) * (z + a)), x / F, y / F, (z + a) / F)

@@ -105,11 +105,62 @@ static void test_paths_without_memory(void) {
     }
 }
 
+/* Paths of a curved layer and of a flat one in one: what is flat lies flat. */
+static void test_frames_come_along(void) {
+    iso_point point[3] = {{1, 2}, {3, 4}, {5, 6}}, by = {10, 20};
+    iso_path like = {.role = ISO_ROLE_SKIRT};
+    iso_paths flat = {0}, curved = {0}, all = {0};
+    CHECK_OK(iso_paths_add(&flat, &like, point, 2, 4000, 800000));
+    CHECK_OK(iso_paths_add(&curved, &like, point, 3, 4000, 800000));
+    CHECK_OK(ISO_GROW(curved.frame, curved.frame_capacity, 3));
+    CHECK_OK(ISO_GROW(curved.travel, curved.travel_capacity, 1));
+    CHECK_OK(ISO_GROW(curved.travel_frame, curved.travel_frame_capacity, 1));
+    curved.travel[curved.travel_count++] = point[1];
+    for (int i = 0; i < 3; i++)
+        curved.frame[i] = (iso_frame){.normal = {0.6, 0, 0.8}, .height = 1000 + i};
+    curved.travel_frame[0] = (iso_frame){.normal = {0, 0.6, 0.8}, .z = 77};
+    curved.path[0].travel_count = 1;
+
+    CHECK_OK(iso_paths_append(&all, &flat, by, 0));
+    CHECK(all.frame == NULL);
+    CHECK_OK(iso_paths_append(&all, &curved, by, 0));
+    CHECK_OK(iso_paths_append(&all, &flat, by, 0));
+    CHECK_OK(iso_paths_add(&all, &like, point, 1, 4000, 800000));
+    CHECK_EQUAL(8, all.vertex_count);
+    for (int i = 0; i < 8; i++) {
+        CHECK_EQUAL(i >= 2 && i < 5 ? 998 + i : 0, all.frame[i].height);
+        CHECK_NEAR(i >= 2 && i < 5 ? 0.8 : 1, all.frame[i].normal.z, 0);
+    }
+    CHECK_EQUAL(1, all.travel_count);
+    CHECK_EQUAL(13, all.travel[0].x);
+    CHECK_EQUAL(77, all.travel_frame[0].z);
+
+    for (int64_t n = 0; n < 2; n++) { /* without room for frames it stays as it was */
+        iso_paths small = {0};
+        CHECK_OK(iso_paths_append(&small, &flat, by, 0));
+        CHECK_OK(ISO_GROW(small.travel, small.travel_capacity, 1));
+        iso_fail_allocation_after(n);
+        iso_status status = iso_paths_append(&small, &curved, by, 0);
+        iso_fail_allocation_after(-1);
+        CHECK_EQUAL(ISO_NO_MEMORY, status);
+        CHECK(small.frame == NULL && small.count == 1 && small.vertex_count == 2);
+        iso_paths_free(&small);
+    }
+    iso_paths_clear(&all); /* and then anything flat may come */
+    CHECK(all.frame == NULL && all.travel_frame == NULL);
+    CHECK_OK(iso_paths_append(&all, &flat, by, 0));
+    CHECK(all.frame == NULL);
+    iso_paths_free(&all);
+    iso_paths_free(&curved);
+    iso_paths_free(&flat);
+}
+
 int main(void) {
     RUN(test_role_names);
     RUN(test_bead_is_a_stadium);
     RUN(test_bead_area_by_quadrature);
     RUN(test_paths_grow_and_keep_what_they_got);
     RUN(test_paths_without_memory);
+    RUN(test_frames_come_along);
     return check_verdict();
 }

@@ -94,7 +94,7 @@ static iso_status check_points(const lift_task *t) {
  * on the same straight line, is the mean of those at both ends. */
 static double factor_along(const lift_task *t, int64_t i, int64_t begin, int64_t end) {
     const samples *s = &t->samples;
-    double f[4], x[4], bend = 0;
+    double f[4] = {0}, x[4] = {0}, bend = 0;
     int32_t bends = 0;
     for (int64_t k = -1; k < 3; k++) {
         if (i + k < begin || i + k > end)

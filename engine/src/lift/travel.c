@@ -66,12 +66,20 @@ static double bump_at(const samples *s, int64_t i, int64_t begin) {
 
 /* ---- near ways ---- */
 
+/* The flat tip of a nozzle that doesn't tilt would scrape along a slope: it is so much lower than
+ * the layer uphill. */
+static const double level = 0.01;
+
 /* As without layers that bend: straight from bead to bead. `from` and `to` are samples. */
 static bool is_near(const lift_task *t, int64_t from, int64_t to) {
     const chart_point *a = &t->samples.point[from], *b = &t->samples.point[to];
     double most = t->options->near;
     iso_vec3 chord = vec3_minus(b->at, a->at);
-    return vec3_dot(chord, chord) <= most * most && sample_rise(a, b) <= t->options->tolerance &&
+    if (chart_kind_of(t->chart) == CHART_GRAPH &&
+        !(fmin(a->normal.z, b->normal.z) > 1 - 0.5 * level * level))
+        return false;
+    return vec3_dot(chord, chord) <= most * most &&
+           fabs(sample_rise(a, b)) <= 0.5 * t->options->tolerance &&
            vec3_dot(a->normal, b->normal) > 0.5;
 }
 
