@@ -26,7 +26,7 @@ typedef enum iso_module {
 } iso_module;
 
 /* Raise by one with every change of a table. */
-enum { MODULE_VERSION_SOLID = 1, MODULE_VERSION_VOLUME = 1, MODULE_VERSION_SPARSE = 1 };
+enum { MODULE_VERSION_SOLID = 2, MODULE_VERSION_VOLUME = 1, MODULE_VERSION_SPARSE = 1 };
 
 /* First in every table. */
 typedef struct module_header {

@@ -1,6 +1,7 @@
-/* Embree, 3 or 4, as a tree of boxes. */
+/* Embree, 3 or 4, as trees of boxes. */
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <new>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -83,29 +84,35 @@ iso_status failure_of(RTCDevice device) {
     return status == ISO_OK ? ISO_BUG : status;
 }
 
-iso_status build(solid_tree *tree, const float *box, int32_t count) {
-    /* One thread: Embree's own would wait in a loop, and processor time is what counts. */
-    tree->device = rtcNewDevice("threads=1,user_threads=1,set_affinity=0,verbose=0");
-    if (!tree->device)
-        return failure_of(nullptr);
-    tree->scene = rtcNewScene(tree->device);
-    if (!tree->scene)
-        return failure_of(tree->device);
-    rtcSetSceneFlags(tree->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(tree->scene, RTC_BUILD_QUALITY_LOW);
-    RTCGeometry geometry = rtcNewGeometry(tree->device, RTC_GEOMETRY_TYPE_USER);
+/* A scene of boxes. */
+iso_status gather(RTCScene *result, RTCDevice device, const float *box, int32_t count) {
+    RTCScene scene = rtcNewScene(device);
+    *result = scene;
+    if (!scene)
+        return failure_of(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     if (!geometry)
-        return failure_of(tree->device);
+        return failure_of(device);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
     rtcSetGeometryUserData(geometry, const_cast<float *>(box));
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
     rtcSetGeometryOccludedFunction(geometry, note);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(tree->scene, geometry);
+    rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
-    rtcCommitScene(tree->scene);
-    return status_of(tree->device);
+    rtcCommitScene(scene);
+    return status_of(device);
+}
+
+iso_status build(solid_tree *tree, const float *box, int32_t count) {
+    /* One thread: Embree's own would wait in a loop, and processor time is what counts. */
+    tree->device = rtcNewDevice("threads=1,user_threads=1,set_affinity=0,verbose=0");
+    if (!tree->device)
+        return failure_of(nullptr);
+    return gather(&tree->scene, tree->device, box, count);
 }
 
 iso_status tree_new(solid_tree **result, const float *box, int32_t count) {
@@ -175,7 +182,49 @@ iso_status tree_rays(int32_t *found, int32_t *first, int32_t *done, const solid_
     }
 }
 
+struct pair_list {
+    std::mutex lock; /* Embree may share the work out */
+    int32_t *pair;
+    int64_t count, capacity;
+};
+
+void note_pairs(void *payload, RTCCollision *collision, unsigned count) {
+    pair_list *list = static_cast<pair_list *>(payload);
+    std::lock_guard<std::mutex> guard(list->lock);
+    for (unsigned i = 0; i < count; i++, list->count++) {
+        if (list->count >= list->capacity)
+            continue;
+        list->pair[2 * list->count] = static_cast<int32_t>(collision[i].primID0);
+        list->pair[2 * list->count + 1] = static_cast<int32_t>(collision[i].primID1);
+    }
+}
+
+iso_status tree_boxes(int32_t *pair, int64_t *count, int64_t capacity, const solid_tree *tree,
+                      const solid_boxes *boxes) {
+    *count = 0;
+    try {
+        RTCScene scene = nullptr;
+        iso_status status = gather(&scene, tree->device, boxes->box, boxes->count);
+        if (status == ISO_OK) {
+            pair_list list;
+            list.pair = pair;
+            list.count = 0;
+            list.capacity = capacity;
+            rtcCollide(tree->scene, scene, note_pairs, &list);
+            *count = list.count;
+            status = status_of(tree->device);
+        }
+        if (scene)
+            rtcReleaseScene(scene);
+        return status;
+    } catch (const std::bad_alloc &) {
+        return ISO_NO_MEMORY;
+    } catch (...) {
+        return ISO_BUG;
+    }
+}
+
 } // namespace
 
 MODULE_TABLE const solid_table isoslice_module = {
-    {MODULE_VERSION_SOLID}, tree_new, tree_free, tree_rays};
+    {MODULE_VERSION_SOLID}, tree_new, tree_free, tree_rays, tree_boxes};

@@ -1,7 +1,7 @@
-/* The table of isoslice-solid.so: which of many boxes does a ray along an axis meet?
+/* The table of isoslice-solid.so: which of many boxes does a ray along an axis, or a box, meet?
  *
  * What it answers decides nothing by itself: it says where to look. Every box that holds a point of
- * the ray, both closed, is among the answers; others may be. */
+ * the ray or box, all closed, is among the answers; others may be. */
 #ifndef ISO_SOLID_TREE_H
 #define ISO_SOLID_TREE_H
 
@@ -18,6 +18,11 @@ typedef struct solid_rays {
     int32_t capacity;
 } solid_rays;
 
+typedef struct solid_boxes {
+    const float *box; /* [6 count] as of tree_new */
+    int32_t count;
+} solid_boxes;
+
 /* ISO_NO_MEMORY; ISO_BAD_CONFIG: no processor for Embree; ISO_BUG: Embree does not like a call. */
 typedef struct solid_table {
     module_header header;
@@ -32,6 +37,12 @@ typedef struct solid_table {
      * what the first ray needs, which is first[1]. Any number of threads at once. */
     iso_status (*tree_rays)(int32_t *found, int32_t *first, int32_t *done, const solid_tree *tree,
                             const solid_rays *rays);
+
+    /* Pairs of a box of the tree, pair[2 i], and one of `boxes`, pair[2 i + 1], that meet, in any
+     * order. *count says how many there are, also if that is more than `capacity`: then the rest is
+     * left out. Any number of threads at once. */
+    iso_status (*tree_boxes)(int32_t *pair, int64_t *count, int64_t capacity,
+                             const solid_tree *tree, const solid_boxes *boxes);
 } solid_table;
 
 #endif

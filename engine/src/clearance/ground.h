@@ -1,0 +1,35 @@
+/* The ground: an upper bound of all beads so far, over cells of x and y.
+ *
+ * Each cell knows how high beads stand in it, and a plane that none of them is above; heights of
+ * 2 x 2 cells are put together, and so on. Most moves of an upright tool are proven free by it: far
+ * away because everything is lower than the tool, near the tip because the plane is, whose slope is
+ * the layer's. What it can't prove may be free all the same. */
+#ifndef ISO_CLEARANCE_GROUND_H
+#define ISO_CLEARANCE_GROUND_H
+
+#include "clearance/tool.h"
+
+typedef struct ground_map ground_map;
+
+iso_status ground_new(ground_map **made, const tool_body *tool) ISO_MUST_CHECK;
+void ground_free(ground_map *ground);
+
+/* Within ISO_COORDINATE_MAX. */
+iso_status ground_add(ground_map *ground, const clearance_move *bead) ISO_MUST_CHECK;
+
+/* A straight piece of the tip's way, and how much the nozzle may be higher there. */
+typedef struct ground_step {
+    iso_vec3 from, to;
+    double raise;
+    int32_t move; /* the caller's */
+} ground_step;
+
+enum { GROUND_STEPS = 64 };
+
+/* Which of the steps, no more than GROUND_STEPS, are not proven free: bit i of *doubtful. They
+ * should be close together. */
+void ground_check(uint64_t *doubtful, ground_map *ground, const ground_step *step, int count);
+
+int64_t ground_bytes(const ground_map *ground);
+
+#endif
