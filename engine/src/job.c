@@ -20,6 +20,7 @@
 #include "path/order.h"
 #include "path/spiral.h"
 #include "plate.h"
+#include "bend.h"
 #include "stack.h"
 #include "surround.h"
 
@@ -45,6 +46,7 @@ typedef struct iso_job {
     int32_t tools, tool;    /* how many the print takes, and which one the nozzle is of */
     iso_point position;     /* of the nozzle */
     bool spirals;           /* the layer below did */
+    iso_bend bend;
     iso_output *output;
     iso_gcode_writer *writer;
     iso_texts texts;
@@ -155,15 +157,31 @@ static iso_status choose_paths(iso_paths *out, const iso_paths *paths, int32_t t
     return ISO_OK;
 }
 
+/* The ordered piece, in space and where it belongs on the bed. */
+static iso_status place_piece(iso_job *job, iso_bend_layer *layer, iso_point by) {
+    iso_paths *placed;
+    ISO_TRY(bend_lift(&placed, &job->bend, &job->piece, layer, &job->crew.hand[0].arena));
+    return iso_paths_append(&job->ordered, placed, by, layer->copy);
+}
+
 /* `copy` is the number of an instance; as many as there are: what is around them. A print with one
  * tool takes the paths as they are. */
-static iso_status order_paths(iso_job *job, const iso_paths *paths, iso_point by, int32_t copy,
-                              int32_t tool) {
+static iso_status order_paths(iso_job *job, const iso_paths *paths, const iso_step *step,
+                              int32_t copy, int32_t tool) {
+    bool around = copy == job->plate.instances.count;
+    const iso_instance *instance = &job->plate.instances.instance[around ? 0 : copy];
+    const iso_stack *stack = &job->stack[instance->object];
+    iso_point by = around ? (iso_point){0, 0} : instance->by;
+    iso_bend_layer layer = {.curved = around ? NULL : &stack->curved,
+                            .levels = &stack->levels,
+                            .level = job->next[instance->object],
+                            .height = step->height,
+                            .copy = around ? -1 : copy};
     iso_order_state *state = &job->state[tool * states(job) + copy];
     iso_arena *arena = &job->crew.hand[0].arena;
     iso_arena_mark mark = iso_arena_get_mark(arena);
     iso_paths own;
-    state->position = (iso_point){job->position.x - by.x, job->position.y - by.y};
+    layer.from = state->position = (iso_point){job->position.x - by.x, job->position.y - by.y};
     if (job->tools > 1) {
         ISO_TRY(choose_paths(&own, paths, tool, arena));
         paths = &own;
@@ -171,8 +189,7 @@ static iso_status order_paths(iso_job *job, const iso_paths *paths, iso_point by
     ISO_TRY(iso_order_layer(&job->piece, paths, state, &job->order, arena));
     iso_arena_pop(arena, mark);
     job->position = (iso_point){state->position.x + by.x, state->position.y + by.y};
-    return iso_paths_append(&job->ordered, &job->piece, by,
-                            copy < job->plate.instances.count ? copy : -1);
+    return place_piece(job, &layer, by);
 }
 
 /* The layers that take part, with their paths. */
@@ -194,7 +211,7 @@ static iso_status make_layers(iso_job *job, const iso_step *step) {
 static iso_status order_tool(iso_job *job, const iso_step *step, const iso_paths *around,
                              int32_t tool) {
     if (around)
-        ISO_TRY(order_paths(job, around, (iso_point){0, 0}, job->plate.instances.count, tool));
+        ISO_TRY(order_paths(job, around, step, job->plate.instances.count, tool));
     for (int32_t k = 0; k < step->count; k++) {
         int32_t i = job->steps & 1 ? step->count - 1 - k : k;
         const iso_instance *instance = &step->instance[i];
@@ -203,11 +220,13 @@ static iso_status order_tool(iso_job *job, const iso_step *step, const iso_paths
         if (!takes_part(job, step, object))
             continue;
         const iso_layer *layer = window_layer(&stack->window, index);
-        ISO_TRY(order_paths(job, &layer->paths, instance->by,
+        ISO_TRY(order_paths(job, &layer->paths, step,
                             (int32_t)(instance - job->plate.instances.instance), tool));
         if (tool > 0)
             continue; /* it has been counted */
-        job->report->sliced_volume += layer->square_mm * stack->levels.height[index];
+        job->report->sliced_volume += stack->level_volume
+                                          ? stack->level_volume[index]
+                                          : layer->square_mm * stack->levels.height[index];
         job->layers_done++;
     }
     return ISO_OK;
@@ -263,11 +282,13 @@ static iso_status write_step(iso_job *job, const iso_step *step, int32_t index) 
                                  .z = step->z + iso_units(job->options->z_offset),
                                  .height = step->height,
                                  .paths = &job->ordered};
-    if (job->options->arc_fitting != ISO_ARCS_DISABLED)
+    if (job->options->arc_fitting != ISO_ARCS_DISABLED && !job->bend.on)
         ISO_TRY(find_arcs(&info, job, arena));
+    ISO_TRY(bend_pose(&info, &job->bend));
     iso_status status = iso_gcode_layer(job->writer, &info);
     iso_arena_pop(arena, mark);
     ISO_TRY(status);
+    ISO_TRY(bend_check(&job->bend, false));
     job->seconds[ISO_STAGE_WRITE] += iso_stage_clock() - begun;
     for (int32_t i = 0; i < job->plate.objects.count; i++)
         job->next[i] += takes_part(job, step, i);
@@ -408,6 +429,12 @@ static iso_status begin_output(iso_job *job, const char *path) {
     gcode.tools = job->tools;
     gcode.object = job->plate.label;
     gcode.object_count = job->plate.label ? job->plate.instances.count : 0;
+    for (int32_t i = 0; i < job->plate.instances.count && !job->bend.on; i++) {
+        const iso_instance *instance = &job->plate.instances.instance[i];
+        const iso_curved *curved = &job->stack[instance->object].curved;
+        if (!curved_is_flat(curved))
+            ISO_TRY(bend_begin(&job->bend, job->options, &gcode, curved, instance->by));
+    }
     ISO_TRY(iso_output_open(&job->output, path));
     ISO_TRY(iso_gcode_writer_new(&job->writer, job->output, &gcode));
     return iso_gcode_begin(job->writer);
@@ -433,6 +460,7 @@ static void job_free(iso_job *job) {
     for (int32_t i = 0; job->state && i < job->tools * states(job); i++)
         iso_order_state_free(&job->state[i]);
     iso_release(job->state);
+    bend_free(&job->bend);
     crew_free(&job->crew);
     plate_free(&job->plate);
     surround_free(&job->surround);
@@ -516,6 +544,7 @@ static iso_status print_job(iso_job *job, const char *const *input, int32_t inpu
     ISO_TRY(look_at_first_layers(job));
     ISO_TRY(begin_output(job, output));
     ISO_TRY(print_steps(job));
+    ISO_TRY(bend_check(&job->bend, true));
     double begun = iso_stage_clock();
     ISO_TRY(finish_output(job));
     job->seconds[ISO_STAGE_WRITE] += iso_stage_clock() - begun;

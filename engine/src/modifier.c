@@ -186,11 +186,15 @@ iso_status modifiers_load(iso_mesh *mesh, const iso_modifiers *modifiers, iso_re
     return ISO_OK;
 }
 
-iso_status modifiers_slice(iso_modifiers *modifiers, const iso_levels *levels) {
+iso_status modifiers_slice(iso_modifiers *modifiers, const iso_levels *levels,
+                           const iso_curved *curved) {
     modifiers->levels = levels;
     for (int32_t i = 0; i < modifiers->count; i++) {
         iso_modifier *modifier = &modifiers->modifier[i];
-        ISO_TRY(iso_slice_planar(&modifier->slices, &modifier->mesh, levels));
+        if (curved_is_flat(curved))
+            ISO_TRY(iso_slice_planar(&modifier->slices, &modifier->mesh, levels));
+        else
+            ISO_TRY(curved_slice(&modifier->slices, curved, &modifier->mesh, levels));
         iso_mesh_free(&modifier->mesh);
     }
     return ISO_OK;

@@ -10,6 +10,7 @@
 #include <isoslice/slice.h>
 
 #include "config/settings.h"
+#include "curved.h"
 
 typedef struct iso_modifier {
     char *path;
@@ -41,7 +42,8 @@ iso_status modifiers_load(iso_mesh *mesh, const iso_modifiers *modifiers,
                           iso_report *report) ISO_MUST_CHECK;
 
 /* Slice the meshes at the object's levels, which must outlive the modifiers, and let them go. */
-iso_status modifiers_slice(iso_modifiers *modifiers, const iso_levels *levels) ISO_MUST_CHECK;
+iso_status modifiers_slice(iso_modifiers *modifiers, const iso_levels *levels,
+                           const iso_curved *curved) ISO_MUST_CHECK;
 
 /* The options that shells follow: a full print with something sparse in it needs those of a sparse
  * one. */

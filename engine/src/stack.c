@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "config/settings_objects.h"
 #include "planar/section.h"
 #include "solid/check.h"
@@ -30,12 +31,14 @@ void crew_free(iso_crew *crew) {
 
 /* ---- slices ---- */
 
-static double projected_area(const iso_mesh *mesh) {
+/* Seen from above; of curved layers, from wherever. */
+static double projected_area(const iso_mesh *mesh, bool flat) {
     double sum = 0;
     for (int32_t t = 0; t < mesh->triangle_count; t++) {
         const int32_t *v = mesh->origin + 3 * (int64_t)t;
         iso_vec3 a = mesh->position[v[0]], b = mesh->position[v[1]], c = mesh->position[v[2]];
-        sum += fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+        iso_vec3 across = vec3_cross(vec3_minus(b, a), vec3_minus(c, a));
+        sum += flat ? fabs(across.z) : vec3_length(across);
     }
     return sum / 2;
 }
@@ -49,7 +52,9 @@ static int64_t slices_bytes(const iso_slices *slices) {
 static iso_status make_levels(iso_stack *stack, const iso_object *object) {
     const iso_options *options = stack->options;
     double heights[ISO_NUMBERS_MAX + 1];
-    if (options->adaptive_layers) {
+    if (!curved_is_flat(&stack->curved)) {
+        ISO_TRY(curved_levels(&stack->levels, &stack->curved, options));
+    } else if (options->adaptive_layers) {
         iso_adaptive_options adaptive = settings_of_adaptive(options);
         ISO_TRY(iso_levels_adaptive(&stack->levels, object->mesh, object->mesh_count, &adaptive));
     } else {
@@ -62,16 +67,24 @@ static iso_status make_levels(iso_stack *stack, const iso_object *object) {
                     object->name, object->max.z, iso_options_first_height(options));
 }
 
-static iso_status slice_meshes(iso_stack *stack, iso_object *object, bool keep) {
+/* Of the mesh's volume, what is above the last flat layer is not printed. */
+static iso_status slice_mesh(iso_stack *stack, iso_slices *slices, const iso_mesh *mesh) {
     double height = stack->levels.top[stack->levels.count - 1];
+    bool flat = curved_is_flat(&stack->curved);
+    stack->mesh_volume += flat ? iso_mesh_volume_between(mesh, 0, height) : iso_mesh_volume(mesh);
+    if (flat)
+        return iso_slice_planar(slices, mesh, &stack->levels);
+    return curved_slice(slices, &stack->curved, mesh, &stack->levels);
+}
+
+static iso_status slice_meshes(iso_stack *stack, iso_object *object, bool keep) {
     ISO_TRY(ISO_ALLOCATE(stack->slices, object->mesh_count));
     memset(stack->slices, 0, (size_t)object->mesh_count * sizeof *stack->slices);
     stack->model_count = object->mesh_count;
     for (int32_t i = 0; i < object->mesh_count; i++) {
         iso_mesh *mesh = &object->mesh[i];
-        ISO_TRY(iso_slice_planar(&stack->slices[i], mesh, &stack->levels));
-        stack->mesh_volume += iso_mesh_volume_between(mesh, 0, height);
-        stack->projected += projected_area(mesh);
+        ISO_TRY(slice_mesh(stack, &stack->slices[i], mesh));
+        stack->projected += projected_area(mesh, curved_is_flat(&stack->curved));
         stack->slice_bytes += slices_bytes(&stack->slices[i]);
         if (!keep)
             iso_mesh_free(mesh);
@@ -82,7 +95,8 @@ static iso_status slice_meshes(iso_stack *stack, iso_object *object, bool keep) 
 /* Meshes go as soon as nothing asks for them any more. */
 static iso_status slice_object(iso_stack *stack, iso_object *object) {
     iso_check_solid mode = (iso_check_solid)stack->options->check_solid;
-    bool checked = solid_check_is_due(object->mesh, object->mesh_count, mode);
+    bool checked = curved_is_flat(&stack->curved) &&
+                   solid_check_is_due(object->mesh, object->mesh_count, mode);
     ISO_TRY(slice_meshes(stack, object, checked));
     if (!checked)
         return ISO_OK;
@@ -98,16 +112,33 @@ static iso_status slice_object(iso_stack *stack, iso_object *object) {
     return ISO_OK;
 }
 
+static iso_status level_volume(double *volume, const iso_stack *stack, int32_t level) {
+    *volume = 0;
+    for (int32_t m = 0; m < stack->model_count; m++) {
+        double more;
+        if (curved_is_flat(&stack->curved))
+            more = section_area(&stack->slices[m], level) * stack->levels.height[level];
+        else
+            ISO_TRY(curved_volume(&more, &stack->curved, &stack->slices[m], &stack->levels, level,
+                                  &stack->crew->hand[0].arena));
+        *volume += more;
+    }
+    return ISO_OK;
+}
+
 /* Slices at the middles of layers miss the volume by less than half a layer under all surface seen
  * from above, and usually by far less. More than that is a wrong slice. */
 static iso_status verify_volume(iso_stack *stack, const iso_object *object) {
     const iso_levels *levels = &stack->levels;
     double thickest = 0;
+    if (!curved_is_flat(&stack->curved))
+        ISO_TRY(ISO_ALLOCATE(stack->level_volume, levels->count));
     for (int32_t i = 0; i < levels->count; i++) {
-        double area = 0;
-        for (int32_t m = 0; m < stack->model_count; m++)
-            area += section_area(&stack->slices[m], i);
-        stack->sliced_volume += area * levels->height[i];
+        double volume;
+        ISO_TRY(level_volume(&volume, stack, i));
+        if (stack->level_volume)
+            stack->level_volume[i] = volume;
+        stack->sliced_volume += volume;
         thickest = fmax(thickest, levels->height[i]);
     }
     double allowed = 1e-6 * stack->mesh_volume + stack->projected * thickest / 2;
@@ -156,12 +187,13 @@ iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *
     stack->crew = crew;
     stack->tools = 1;
     stack->block = LAYERS_PER_THREAD * crew->count;
+    ISO_TRY(curved_new(&stack->curved, stack->report, stack->options, object));
     ISO_TRY(make_levels(stack, object));
     ISO_TRY(make_lattices(stack, object));
     ISO_TRY(slice_object(stack, object));
     ISO_TRY(verify_volume(stack, object));
     if (modifiers)
-        ISO_TRY(modifiers_slice(modifiers, &stack->levels));
+        ISO_TRY(modifiers_slice(modifiers, &stack->levels, &stack->curved));
     if (combine_is_asked_for(options)) {
         ISO_TRY(ISO_ALLOCATE(stack->combination, stack->levels.count));
         combine_plan(stack->combination, &stack->levels, options);
@@ -180,6 +212,8 @@ void stack_free(iso_stack *stack) {
     iso_release(stack->lattice);
     window_free(&stack->window);
     iso_levels_free(&stack->levels);
+    iso_release(stack->level_volume);
+    curved_free(&stack->curved);
 }
 
 /* ---- layers ---- */
@@ -229,7 +263,9 @@ static iso_status fill_task(void *payload, int64_t number, int worker) {
     iso_hand *hand = &stack->crew->hand[worker];
     if (stack->combination)
         ISO_TRY(combine_layer(&stack->window, index, &stack->combination[index], hand));
-    return layer_fill(window_layer(&stack->window, index), hand, beneath);
+    iso_layer *layer = window_layer(&stack->window, index);
+    ISO_TRY(layer_fill(layer, hand, beneath));
+    return curved_clip(&layer->paths, &hand->paths, &stack->curved, &hand->arena);
 }
 
 static int32_t least(int32_t a, int32_t b) {

@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "combine.h"
+#include "curved.h"
 #include "modifier.h"
 #include "window.h"
 
@@ -32,6 +33,8 @@ typedef struct iso_stack {
     int32_t model_count;
     iso_slices *slices; /* [model_count] */
     iso_levels levels;
+    iso_curved curved;    /* what the levels are of, unless they are flat */
+    double *level_volume; /* [levels.count] mm^3, of curved levels; else NULL */
     double mesh_volume;   /* mm^3 of the meshes up to the top of the last layer */
     double sliced_volume; /* mm^3 of their slices */
     double projected;     /* mm^2 of all triangles seen from above */

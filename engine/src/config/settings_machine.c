@@ -11,12 +11,27 @@ static void set_box(iso_vec2 *low, iso_vec2 *high, const iso_points *corners) {
     *high = (iso_vec2){fmax(a.x, b.x), fmax(a.y, b.y)};
 }
 
+static clearance_turning turning_of(int32_t kinematics) {
+    switch ((iso_kinematics)kinematics) {
+    case ISO_KINEMATICS_ROTARY_A:
+        return CLEARANCE_ABOUT_X;
+    case ISO_KINEMATICS_ROTARY_B:
+        return CLEARANCE_ABOUT_Y;
+    case ISO_KINEMATICS_TABLE_AC:
+    case ISO_KINEMATICS_TABLE_BC:
+        return CLEARANCE_ABOUT_ALL;
+    default:
+        return CLEARANCE_UPRIGHT;
+    }
+}
+
 clearance_tool settings_of_tool(const iso_options *options) {
     clearance_tool tool = {.tip_diameter = options->clearance_tip,
                            .cone_angle = options->clearance_cone,
                            .cone_height = options->clearance_cone_height,
                            .carriage_height = options->clearance_carriage_height,
-                           .gantry_height = options->clearance_gantry_height};
+                           .gantry_height = options->clearance_gantry_height,
+                           .turning = turning_of(options->kinematics)};
     set_box(&tool.block_low, &tool.block_high, &options->clearance_block);
     set_box(&tool.carriage_low, &tool.carriage_high, &options->clearance_carriage);
     return tool;

@@ -1,0 +1,299 @@
+#include "curved.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/angle.h"
+#include "base/memory.h"
+#include "base/series.h"
+#include "base/vector.h"
+#include "config/settings.h"
+
+/* What bends by A over a height H has a field that rises by 1 -+ 1.5 A / H or so. */
+#define BLEND_PER_BEND 5.0
+
+/* mm: what the range of a field may be off. */
+#define RANGE_EXACTNESS 0.005
+
+static bool turns(const iso_options *options) {
+    return options->kinematics != ISO_KINEMATICS_CARTESIAN;
+}
+
+/* ---- a flat base ---- */
+
+enum { BEND_SAMPLES = 33 };
+
+/* Least and greatest of F - z above the object's footprint, at a height. */
+static iso_status find_bend(double bend[2], const iso_field *field, const iso_object *object,
+                            double z) {
+    iso_vec3 at[BEND_SAMPLES];
+    double value[BEND_SAMPLES];
+    bend[0] = INFINITY;
+    bend[1] = -INFINITY;
+    for (int j = 0; j < BEND_SAMPLES; j++) {
+        double y = object->min.y + (object->max.y - object->min.y) * j / (BEND_SAMPLES - 1);
+        for (int i = 0; i < BEND_SAMPLES; i++) {
+            double x = object->min.x + (object->max.x - object->min.x) * i / (BEND_SAMPLES - 1);
+            at[i] = vec3(x, y, z);
+        }
+        iso_field_evaluate(value, NULL, field, at, BEND_SAMPLES);
+        for (int i = 0; i < BEND_SAMPLES; i++) {
+            if (!isfinite(value[i]))
+                return iso_fail(ISO_BAD_CONFIG, "field: it has no value at x %g, y %g, z %g",
+                                at[i].x, at[i].y, at[i].z);
+            bend[0] = fmin(bend[0], value[i] - z);
+            bend[1] = fmax(bend[1], value[i] - z);
+        }
+    }
+    return ISO_OK;
+}
+
+static iso_status blend(iso_field **field, iso_report *report, const iso_options *options,
+                        const iso_object *object) {
+    double base = options->field_base, height = options->field_blend, bend[2];
+    ISO_TRY(find_bend(bend, *field, object, base));
+    if (!(height > 0)) { /* how much it bends depends a little on how high that is */
+        for (int turn = 0; turn < 2; turn++) {
+            height = fmax(BLEND_PER_BEND * (bend[1] - bend[0]) / 2, options->layer_height);
+            ISO_TRY(find_bend(bend, *field, object, base + height / 2));
+        }
+    }
+    if (base + height > object->max.z)
+        ISO_TRY(iso_report_warn(report, "field-blend",
+                                "layers bend from %.2f to %.2f mm, and the part is only %.2f mm "
+                                "high: its top isn't as curved as the field is",
+                                base, base + height, object->max.z));
+    iso_field *blended;
+    iso_status status =
+        iso_field_blend(&blended, *field, (bend[0] + bend[1]) / 2, base, base + height);
+    *field = status == ISO_OK ? blended : NULL;
+    return status;
+}
+
+/* ---- the range of a field on meshes ---- */
+
+typedef struct range_search {
+    const iso_field *field;
+    double low, high;
+} range_search;
+
+static void take(range_search *s, double value) {
+    s->low = fmin(s->low, value);
+    s->high = fmax(s->high, value);
+}
+
+/* Least and greatest of the slopes' products with a step. */
+static void widen(double reach[2], const iso_field_bound *bound, iso_vec3 step) {
+    const double low[3] = {bound->gradient_low.x, bound->gradient_low.y, bound->gradient_low.z};
+    const double high[3] = {bound->gradient_high.x, bound->gradient_high.y, bound->gradient_high.z};
+    const double along[3] = {step.x, step.y, step.z};
+    double least = 0, greatest = 0;
+    for (int k = 0; k < 3; k++) {
+        if (along[k] == 0)
+            continue; /* whatever the slope is */
+        least += fmin(low[k] * along[k], high[k] * along[k]);
+        greatest += fmax(low[k] * along[k], high[k] * along[k]);
+    }
+    reach[0] = fmin(reach[0], least);
+    reach[1] = fmax(reach[1], greatest);
+}
+
+/* May the face hold less or more than what is known? From its middle each of its points is a mean
+ * of the ways to the corners, and so is what the field gains there, at most. */
+static bool may_widen(range_search *s, const iso_vec3 corner[3]) {
+    iso_vec3 low = corner[0], high = corner[0];
+    for (int k = 1; k < 3; k++) {
+        low = vec3(fmin(low.x, corner[k].x), fmin(low.y, corner[k].y), fmin(low.z, corner[k].z));
+        high =
+            vec3(fmax(high.x, corner[k].x), fmax(high.y, corner[k].y), fmax(high.z, corner[k].z));
+    }
+    iso_field_bound bound;
+    iso_field_bound_over(&bound, s->field, low, high);
+    if (bound.low >= s->low - RANGE_EXACTNESS && bound.high <= s->high + RANGE_EXACTNESS)
+        return false;
+    iso_vec3 middle = vec3_times(vec3_plus(corner[0], vec3_plus(corner[1], corner[2])), 1.0 / 3);
+    double value, reach[2] = {0, 0};
+    iso_field_evaluate(&value, NULL, s->field, &middle, 1);
+    take(s, value);
+    for (int k = 0; k < 3; k++)
+        widen(reach, &bound, vec3_minus(corner[k], middle));
+    return !(value + reach[0] >= s->low - RANGE_EXACTNESS &&
+             value + reach[1] <= s->high + RANGE_EXACTNESS);
+}
+
+/* Quarter the face for as long as it may. */
+static void search_face(range_search *s, iso_vec3 a, iso_vec3 b, iso_vec3 c, int depth) {
+    if (depth == 0 || !may_widen(s, (iso_vec3[3]){a, b, c}))
+        return;
+    iso_vec3 ab = vec3_between(a, b, 0.5), bc = vec3_between(b, c, 0.5),
+             ca = vec3_between(c, a, 0.5);
+    search_face(s, a, ab, ca, depth - 1);
+    search_face(s, ab, b, bc, depth - 1);
+    search_face(s, ca, bc, c, depth - 1);
+    search_face(s, ab, bc, ca, depth - 1);
+}
+
+enum { RANGE_DEPTH = 12, RANGE_BLOCK = 256 };
+
+static void search_vertices(range_search *s, const iso_mesh *mesh) {
+    double value[RANGE_BLOCK];
+    for (int32_t v = 0; v < mesh->vertex_count; v += RANGE_BLOCK) {
+        int32_t count = mesh->vertex_count - v < RANGE_BLOCK ? mesh->vertex_count - v : RANGE_BLOCK;
+        iso_field_evaluate(value, NULL, s->field, mesh->position + v, count);
+        for (int32_t i = 0; i < count; i++)
+            take(s, value[i]);
+    }
+}
+
+static void search_mesh(range_search *s, const iso_mesh *mesh) {
+    search_vertices(s, mesh);
+    for (int32_t t = 0; t < mesh->triangle_count; t++) {
+        const int32_t *v = mesh->origin + 3 * (int64_t)t;
+        search_face(s, mesh->position[v[0]], mesh->position[v[1]], mesh->position[v[2]],
+                    RANGE_DEPTH);
+    }
+}
+
+/* ---- making it ---- */
+
+static iso_status check_options(const iso_options *options) {
+    if (options->adaptive_layers)
+        return iso_fail(ISO_BAD_CONFIG,
+                        "adaptive_layers: layers of a field are as thick as the field says");
+    if (options->spiral_vase)
+        return iso_fail(ISO_BAD_CONFIG, "spiral_vase: not with layers of a field");
+    return ISO_OK;
+}
+
+static iso_status find_range(iso_curved *curved, const iso_object *object) {
+    range_search search = {curved->field, INFINITY, -INFINITY};
+    for (int32_t i = 0; i < object->mesh_count; i++)
+        search_mesh(&search, &object->mesh[i]);
+    curved->low = search.low;
+    curved->high = search.high;
+    if (isfinite(search.low) && isfinite(search.high))
+        return ISO_OK;
+    return iso_fail(ISO_BAD_CONFIG, "field: it has no value on some of the model");
+}
+
+static iso_status make(iso_curved *curved, iso_report *report, const iso_options *options,
+                       const iso_object *object) {
+    iso_vec3 origin = {object->origin.x, object->origin.y, object->floor};
+    ISO_TRY(iso_field_open(&curved->field, options->field, object->mesh, object->mesh_count,
+                           options->field_slope, origin));
+    if (iso_field_is_z(curved->field)) {
+        curved_free(curved);
+        return ISO_OK;
+    }
+    iso_field_kind kind = iso_field_kind_of(curved->field);
+    if (kind == ISO_FIELD_GEODESIC)
+        return iso_fail(ISO_BAD_CONFIG, "field: geodesic is of a model's surface only, for "
+                                        "isoslice contours and channels, not for layers");
+    ISO_TRY(check_options(options));
+    if (options->field_flat_base && !turns(options) && kind != ISO_FIELD_AUTO_TOP)
+        ISO_TRY(blend(&curved->field, report, options, object));
+    ISO_TRY(find_range(curved, object));
+    curved->margin = 4 + options->perimeters * options->nozzle_diameter * 2;
+    iso_vec3 box[2] = {object->min, object->max};
+    double range[2] = {curved->low, curved->high};
+    return chart_new(&curved->chart, curved->field, turns(options), box, range);
+}
+
+iso_status curved_new(iso_curved *curved, iso_report *report, const iso_options *options,
+                      const iso_object *object) {
+    if (!options->field[0])
+        return ISO_OK;
+    iso_status status = make(curved, report, options, object);
+    if (status != ISO_OK)
+        curved_free(curved);
+    return status;
+}
+
+void curved_free(iso_curved *curved) {
+    chart_free(curved->chart);
+    iso_field_free(curved->field);
+    *curved = (iso_curved){0};
+}
+
+/* ---- levels and slices ---- */
+
+iso_status curved_levels(iso_levels *levels, const iso_curved *curved, const iso_options *options) {
+    double height[ISO_NUMBERS_MAX + 1], span = curved->high - curved->low;
+    int32_t count = iso_options_heights(height, options), kept = 1;
+    if (!options->field_flat_base || turns(options)) {
+        height[0] = options->layer_height;
+        kept = 0;
+    }
+    ISO_TRY(iso_levels_from_heights(levels, height, count, span));
+    if (levels->count <= kept)
+        return ISO_OK;
+    double below = kept ? levels->top[0] : 0;
+    double factor = (span - below) / (levels->top[levels->count - 1] - below);
+    for (int32_t i = kept; i < levels->count; i++) {
+        levels->cut[i] = below + (levels->cut[i] - below) * factor;
+        levels->top[i] = below + (levels->top[i] - below) * factor;
+        levels->height[i] *= factor;
+    }
+    return ISO_OK;
+}
+
+iso_status curved_slice(iso_slices *slices, const iso_curved *curved, const iso_mesh *mesh,
+                        const iso_levels *levels) {
+    iso_curves curves;
+    iso_field_slicing slicing = iso_field_slicing_defaults();
+    double *level;
+    *slices = (iso_slices){0};
+    ISO_TRY(ISO_ALLOCATE(level, levels->count));
+    for (int32_t i = 0; i < levels->count; i++)
+        level[i] = curved->low + levels->cut[i];
+    iso_status status =
+        iso_slice_field(&curves, mesh, curved->field, level, levels->count, &slicing);
+    iso_release(level);
+    ISO_TRY(status);
+    status = chart_slices(slices, curved->chart, &curves, curved->margin);
+    iso_curves_free(&curves);
+    return status;
+}
+
+iso_status curved_volume(double *volume, const iso_curved *curved, const iso_slices *slices,
+                         const iso_levels *levels, int32_t level, iso_arena *scratch) {
+    const double layer[2] = {curved->low + levels->top[level], levels->height[level]};
+    return chart_volume(volume, curved->chart, slices, level, layer, scratch);
+}
+
+iso_status curved_clip(iso_paths *paths, iso_paths *spare, const iso_curved *curved,
+                       iso_arena *scratch) {
+    if (curved_is_flat(curved) || !(chart_period(curved->chart) > 0))
+        return ISO_OK;
+    ISO_TRY(chart_clip_paths(spare, paths, curved->chart, scratch));
+    iso_paths clipped = *spare;
+    *spare = *paths;
+    *paths = clipped;
+    return ISO_OK;
+}
+
+/* ---- into space ---- */
+
+lift_options curved_lift_options(const iso_curved *curved, const iso_options *options,
+                                 const iso_levels *levels, int32_t level) {
+    const double degree = 3.14159265358979323846 / 180;
+    lift_options lift = {.r = curved->low + levels->top[level],
+                         .thickness = levels->height[level],
+                         .z = levels->top[level],
+                         .tolerance = options->field_tolerance,
+                         .near = options->retract_before_travel,
+                         .clearance = fmax(options->retract_lift, 2 * options->layer_height)};
+    if (turns(options)) {
+        lift.turn = degree; /* 0.01 mm between two poses 250 mm from the pivot */
+    } else {
+        lift.slope = series_tangent(options->field_slope * degree);
+        /* uphill the edge of the tip is this much nearer to the layer */
+        lift.clearance += options->clearance_tip / 2 * lift.slope;
+    }
+    return lift;
+}
+
+iso_status curved_lift(iso_paths *out, const iso_curved *curved, const iso_paths *flat,
+                       const lift_options *options, iso_arena *scratch) {
+    return lift_paths(out, flat, curved->chart, options, scratch);
+}
