@@ -48,7 +48,7 @@ typedef void iso_field_function(double *value, iso_vec3 *gradient, const iso_vec
 typedef void iso_field_function_bound(iso_field_bound *bound, iso_vec3 low, iso_vec3 high,
                                       void *payload);
 
-/* From a text, as a user writes it (docs/curved-layers.md):
+/* From a text, as a user writes it (docs/fields.md):
  *
  *     z   plane:nx,ny,nz   cone:SLOPE[,x,y]   sphere:x,y,z   cylinder:AXIS[,c,c]   torus:R[,x,y,z]
  *     wave:AMPLITUDE,LENGTH[,DIRECTION]   fan:AXIS,c,c,R   or an expression in x, y, z:
