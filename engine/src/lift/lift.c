@@ -8,12 +8,13 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { RUN_MOST = 32 }; /* samples that one line passes over */
-
 /* ---- samples ---- */
 
 /* By how much beads may differ from the mean of their piece. */
 static const double bead_share = 0.08;
+/* Tolerances that the layer may stand off the line between two points of it: lines are then moved
+ * half of it (half_rise), and what is left is for neighbours that are moved otherwise. */
+static const double both_sides = 1.6;
 
 static int64_t samples_of(const iso_paths *flat) {
     int64_t count = 0;
@@ -92,8 +93,10 @@ static iso_status check_points(const lift_task *t) {
 /* mm^3 for each unit^2 of the flat bead's section: the chart's volume factor along the piece from i
  * to i + 1, by the trapezoid, less what the bend of the factor adds to that: its second difference,
  * on the same straight line, is the mean of those at both ends. */
-static double factor_along(const lift_task *t, int64_t i, int64_t begin, int64_t end) {
+static double factor_along(const lift_task *t, int64_t i) {
     const samples *s = &t->samples;
+    int64_t begin = i > 0 && s->owner[i - 1] == s->owner[i] ? i - 1 : i;
+    int64_t end = s->owner[i + 1] == s->owner[i] ? i + 2 : i + 1;
     double f[4] = {0}, x[4] = {0}, bend = 0;
     int32_t bends = 0;
     for (int64_t k = -1; k < 3; k++) {
@@ -129,33 +132,6 @@ static double height_of_bead(double width, double area) {
     return rest < 0 ? width : (width - sqrt(rest)) / (2 * corners);
 }
 
-static iso_path_vertex vertex_at(const lift_task *t, const chart_point *p) {
-    return (iso_path_vertex){.at = {iso_units(p->at.x), iso_units(p->at.y)},
-                             .z = iso_units(p->at.z - t->options->z)};
-}
-
-static iso_status grow(iso_paths *out, int64_t vertices) {
-    if (vertices > INT32_MAX - 1)
-        return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
-    ISO_TRY(ISO_GROW(out->vertex, out->vertex_capacity, vertices));
-    return ISO_GROW(out->frame, out->frame_capacity, vertices);
-}
-
-static iso_status put_vertex(iso_paths *out, const lift_task *t, int64_t sample) {
-    const chart_point *p = &t->samples.point[sample];
-    int32_t owner = t->samples.owner[sample];
-    const iso_path_vertex *flat = &t->flat->vertex[owner < 0 ? ~owner : owner];
-    ISO_TRY(grow(out, (int64_t)out->vertex_count + 1));
-    iso_path_vertex *vertex = &out->vertex[out->vertex_count];
-    *vertex = vertex_at(t, p);
-    vertex->role = flat->role;
-    vertex->width = flat->width;
-    vertex->area = flat->area;
-    out->frame[out->vertex_count++] =
-        (iso_frame){.normal = p->normal, .height = iso_units(t->options->thickness * p->thickness)};
-    return ISO_OK;
-}
-
 static double units_between(const iso_path_vertex *a, const iso_path_vertex *b) {
     double x = (double)b->at.x - a->at.x, y = (double)b->at.y - a->at.y, z = (double)b->z - a->z;
     return sqrt(x * x + y * y + z * z);
@@ -166,7 +142,8 @@ static int32_t to_int32(double x) {
 }
 
 /* The bead from one vertex to another is as wide as what it holds makes it. `factor` is the chart's
- * along the piece, in units of length. Returns what has no room as the piece has no length. */
+ * along the piece, in units of length, `thickness` that of the layer. Returns what finds no room as
+ * the piece has no length. */
 static double put_bead(iso_path_vertex *from, const iso_path_vertex *to, double factor,
                        double thickness) {
     double length = units_between(from, to);
@@ -180,54 +157,100 @@ static double put_bead(iso_path_vertex *from, const iso_path_vertex *to, double 
     return 0;
 }
 
-/* The farthest sample that a straight line from `i` may go to. */
-static int64_t run_end(const lift_task *t, int64_t i, int64_t last) {
+/* ---- vertices ---- */
+
+/* Where the straight line that begins at sample `i` ends: at the next sample that is meant for it,
+ * if nothing between is off the line then. */
+static int64_t line_end(const lift_task *t, int64_t i) {
+    const samples *s = &t->samples;
     int64_t end = i + 1;
-    while (end < last && end - i < RUN_MOST &&
-           sample_fits(&t->samples, i, end + 1, t->chart, &t->limits))
+    while (!s->keep[end])
         end++;
+    while (end > i + 1 && !sample_fits(s, i, end, t->chart, &t->limits))
+        end = i + (end - i + 1) / 2;
     return end;
 }
 
-/* One flat bead, samples `begin` to `end`. The vertex at its beginning isn't there yet, nor is that
- * at its end. */
-static iso_status lift_bead(iso_paths *out, const lift_task *t, int64_t begin, int64_t end) {
-    double left = 0;
-    for (int64_t i = begin, next; i < end; i = next) {
-        next = run_end(t, i, end);
-        double factor = left;
-        for (int64_t k = i; k < next; k++)
-            factor += factor_along(t, k, begin, end) * ISO_UNITS_PER_MM;
-        ISO_TRY(put_vertex(out, t, i));
-        iso_path_vertex to = vertex_at(t, &t->samples.point[next]);
-        left = put_bead(&out->vertex[out->vertex_count - 1], &to, factor,
-                        0.5 * (t->samples.point[i].thickness + t->samples.point[next].thickness));
-        if (left > 0 && next < end)
-            out->vertex_count--;
+/* Vertices stand above the layer by half of what it stands above the lines that meet there: so
+ * lines are as far above it at their ends as below it in their middles. */
+static double half_rise(double before, double after) {
+    if (before * after < 0)
+        return 0.25 * (before + after);
+    return 0.5 * (fabs(before) > fabs(after) ? before : after);
+}
+
+/* The samples of a path that become vertices, and how far the layer is off the lines that begin
+ * there. Returns how many; a closed path's last is its first again. */
+static int32_t choose_vertices(lift_task *t, int64_t first, int64_t last) {
+    int32_t count = 0;
+    for (int64_t i = first; i < last; count++) {
+        int64_t end = line_end(t, i);
+        t->chosen[count] = i;
+        t->rise[count] = sample_rise(&t->samples.point[i], &t->samples.point[end]);
+        i = end;
     }
-    return ISO_OK;
+    t->chosen[count] = last;
+    t->rise[count] = 0;
+    return count + 1;
+}
+
+static void place_vertices(iso_path_vertex *vertex, iso_frame *frame, const lift_task *t,
+                           int32_t count, bool closed) {
+    for (int32_t i = 0; i < count; i++) {
+        const chart_point *p = &t->samples.point[t->chosen[i]];
+        int32_t owner = t->samples.owner[t->chosen[i]];
+        double before = i > 0 ? t->rise[i - 1] : closed && count > 1 ? t->rise[count - 2] : 0;
+        double after = i + 1 < count || !closed ? t->rise[i] : t->rise[0];
+        iso_vec3 at = lift_above(t, p, half_rise(before, after));
+        vertex[i] = t->flat->vertex[owner < 0 ? ~owner : owner];
+        vertex[i].at = (iso_point){iso_units(at.x), iso_units(at.y)};
+        vertex[i].z = iso_units(at.z - t->options->z);
+        frame[i] = (iso_frame){.normal = p->normal,
+                               .height = iso_units(t->options->thickness * p->thickness)};
+    }
+}
+
+/* What has no room goes to the next line of the same bead. */
+static void place_beads(iso_path_vertex *vertex, const lift_task *t, int32_t count) {
+    const samples *s = &t->samples;
+    double left = 0;
+    for (int32_t i = 0; i + 1 < count; i++) {
+        int64_t from = t->chosen[i], to = t->chosen[i + 1];
+        double factor = i > 0 && s->owner[from] == s->owner[from - 1] ? left : 0;
+        for (int64_t k = from; k < to; k++)
+            factor += factor_along(t, k) * ISO_UNITS_PER_MM;
+        left = put_bead(&vertex[i], &vertex[i + 1], factor,
+                        0.5 * (s->point[from].thickness + s->point[to].thickness));
+    }
+}
+
+static iso_status grow(iso_paths *out, int64_t more) {
+    int64_t vertices = out->vertex_count + more;
+    if (vertices > INT32_MAX - 1)
+        return iso_fail(ISO_OUTSIDE, "a layer with more than 2^31 path vertices is too much");
+    ISO_TRY(ISO_GROW(out->vertex, out->vertex_capacity, vertices));
+    return ISO_GROW(out->frame, out->frame_capacity, vertices);
 }
 
 /* From sample *i on; leaves *i behind the path's last one. */
-static iso_status lift_path(iso_paths *out, const lift_task *t, const iso_path *flat, int64_t *i) {
+static iso_status lift_path(iso_paths *out, lift_task *t, const iso_path *flat, int64_t *i) {
     iso_path *path = &out->path[out->count++];
     *path = *flat;
     path->first = out->vertex_count;
     path->travel_first = path->travel_count = 0;
     if (flat->count == 0)
         return ISO_OK;
-    const int32_t *owner = t->samples.owner;
-    while (owner[*i] >= 0) {
-        int64_t end = *i + 1;
-        while (owner[end] == owner[*i])
-            end++;
-        ISO_TRY(lift_bead(out, t, *i, end));
-        *i = end;
-    }
-    if (!flat->closed)
-        ISO_TRY(put_vertex(out, t, *i));
-    (*i)++;
-    path->count = out->vertex_count - path->first;
+    int64_t first = *i, last = first;
+    while (!sample_is_last(&t->samples, last))
+        last++;
+    *i = last + 1;
+    ISO_TRY(grow(out, last - first + 1));
+    iso_path_vertex *vertex = out->vertex + path->first;
+    int32_t count = choose_vertices(t, first, last);
+    place_vertices(vertex, out->frame + path->first, t, count, flat->closed);
+    place_beads(vertex, t, count);
+    path->count = count - (flat->closed != 0);
+    out->vertex_count += path->count;
     return ISO_OK;
 }
 
@@ -246,10 +269,12 @@ static iso_status lift_all(iso_paths *out, lift_task *t) {
     ISO_TRY(sample_paths(&t->samples, flat, t->arena));
     ISO_TRY(sample_refine(&t->samples, t->chart, &t->limits, t->arena));
     ISO_TRY(check_points(t));
+    ISO_TRY(sample_spread(&t->samples, t->chart, &t->limits, t->arena));
     ISO_TRY(ISO_PUSH(t->length, t->arena, t->samples.count));
+    ISO_TRY(ISO_PUSH(t->chosen, t->arena, t->samples.count));
+    ISO_TRY(ISO_PUSH(t->rise, t->arena, t->samples.count));
     measure(t);
     ISO_TRY(ISO_GROW(out->path, out->path_capacity, flat->count));
-    ISO_TRY(grow(out, t->samples.count));
     for (int32_t p = 0; p < flat->count; p++)
         ISO_TRY(lift_path(out, t, &flat->path[p], &i));
     return lift_travels(out, t);
@@ -263,6 +288,7 @@ iso_status lift_paths(iso_paths *out, const iso_paths *flat, const chart *map,
                       .options = options,
                       .limits = {.layer = {options->r, options->thickness},
                                  .tolerance = options->tolerance,
+                                 .bump = both_sides * options->tolerance,
                                  .turn = options->turn,
                                  .share = bead_share},
                       .arena = scratch};

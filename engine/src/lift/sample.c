@@ -31,46 +31,48 @@ double sample_rise(const chart_point *a, const chart_point *b) {
     return larger * (up * down > 0 ? 0.25 : 4.0 / 27);
 }
 
-static int32_t cuts(double share) {
-    return share < PIECES_MOST ? (int32_t)ceil(share) : PIECES_MOST;
-}
-
 static double larger_share(double a, double b) {
     return (a > b ? a - b : b - a) / (a < b ? a : b);
 }
 
-/* Pieces that a piece must become, as its ends tell. */
-static int32_t pieces_of(const chart_point *a, const chart_point *b, const chart *map,
-                         const sample_limits *limits) {
-    double off = fabs(sample_rise(a, b)) * (1 + chart_swerve(map, b));
-    int32_t pieces = off > limits->tolerance ? cuts(sqrt(off / limits->tolerance)) : 1;
-    if (limits->turn > 0) {
-        double turn = vec3_distance(a->normal, b->normal);
-        if (turn > limits->turn && cuts(turn / limits->turn) > pieces)
-            pieces = cuts(turn / limits->turn);
-    }
-    if (limits->share > 0 && (a->volume != b->volume || a->thickness != b->thickness)) {
-        double share =
-            fmax(larger_share(a->volume, b->volume), larger_share(a->thickness, b->thickness));
-        if (share > limits->share && cuts(share / limits->share) > pieces)
-            pieces = cuts(share / limits->share);
-    }
-    return pieces;
+/* How much a piece takes of what it may, as its ends tell: pieces that it should be. */
+static double need_of(const chart_point *a, const chart_point *b, const chart *map,
+                      const sample_limits *limits) {
+    double rise = fabs(sample_rise(a, b));
+    double need = sqrt(fmax(rise / limits->bump, rise * chart_swerve(map, b) / limits->tolerance));
+    if (limits->turn > 0)
+        need = fmax(need, vec3_distance(a->normal, b->normal) / limits->turn);
+    if (limits->share > 0 && (a->volume != b->volume || a->thickness != b->thickness))
+        need = fmax(need, fmax(larger_share(a->volume, b->volume),
+                               larger_share(a->thickness, b->thickness)) /
+                              limits->share);
+    return need;
 }
 
-static double squared_distance_to_line(iso_vec3 p, iso_vec3 a, iso_vec3 b) {
-    iso_vec3 chord = vec3_minus(b, a), to = vec3_minus(p, a);
+/* What a need may be over 1 as it is only estimated; pieces of equal shares come out a little
+ * unequal. */
+static const double enough = 1.02;
+
+static int32_t pieces_of(const chart_point *a, const chart_point *b, const chart *map,
+                         const sample_limits *limits) {
+    double need = need_of(a, b, map, limits);
+    return need <= enough ? 1 : need < PIECES_MOST ? (int32_t)ceil(need) : PIECES_MOST;
+}
+
+/* Is a sample no further off a straight line than it may be? */
+static bool is_on(const chart_point *p, iso_vec3 a, iso_vec3 b, const sample_limits *limits) {
+    iso_vec3 chord = vec3_minus(b, a), to = vec3_minus(p->at, a);
     double square = vec3_dot(chord, chord);
     if (square > 0)
         to = vec3_along(to, -vec3_dot(to, chord) / square, chord);
-    return vec3_dot(to, to);
+    double up = vec3_dot(to, p->normal), aside = vec3_dot(to, to) - up * up;
+    return fabs(up) <= limits->bump * enough && aside <= limits->tolerance * limits->tolerance;
 }
 
 bool sample_fits(const samples *s, int64_t i, int64_t j, const chart *map,
                  const sample_limits *limits) {
-    double most = limits->tolerance * limits->tolerance;
     for (int64_t k = i + 1; k < j; k++)
-        if (squared_distance_to_line(s->point[k].at, s->point[i].at, s->point[j].at) > most)
+        if (!is_on(&s->point[k], s->point[i].at, s->point[j].at, limits))
             return false;
     return pieces_of(&s->point[i], &s->point[j], map, limits) == 1;
 }
@@ -176,5 +178,111 @@ iso_status sample_refine(samples *s, const chart *map, const sample_limits *limi
             break;
         ISO_TRY(add_samples(s, &round, map, limits, arena));
     }
+    return ISO_OK;
+}
+
+/* ---- spreading ---- */
+
+/* Closer than this share of a piece to a sample, that sample will do. */
+static const double close_by = 0.1;
+
+/* Samples that are to come after others. */
+typedef struct spread {
+    samples added;
+    int64_t *after; /* [added.count] */
+    uint8_t *keep;  /* [samples] of those that are there */
+    double *need;   /* [samples] of the piece that begins there */
+} spread;
+
+/* Between samples `begin` and `end`, `pieces` of the same need, `each`. */
+static void spread_line(spread *to, const samples *s, const chart *map, const int64_t ends[2],
+                        double each) {
+    double done = 0, next = each;
+    for (int64_t i = ends[0]; i < ends[1]; i++) {
+        double need = to->need[i];
+        for (; next < done + need && need > 0; next += each) {
+            double t = (next - done) / need;
+            if (t < close_by || t > 1 - close_by) {
+                to->keep[t < 0.5 ? i : i + 1] = 1;
+                continue;
+            }
+            iso_vec2 step = sample_step(map, s->flat[i], s->flat[i + 1]);
+            to->added.flat[to->added.count] =
+                (iso_vec2){s->flat[i].x + t * step.x, s->flat[i].y + t * step.y};
+            to->after[to->added.count++] = i;
+        }
+        done += need;
+    }
+}
+
+static int64_t line_end(const samples *s, int64_t i) {
+    int64_t end = i + 1;
+    while (s->owner[end] == s->owner[i])
+        end++;
+    return end;
+}
+
+static int64_t measure_needs(spread *to, const samples *s, const chart *map,
+                             const sample_limits *limits) {
+    int64_t most = 0;
+    for (int64_t i = 0; i < s->count; i++) {
+        to->keep[i] = sample_is_last(s, i) || i == 0 || s->owner[i] != s->owner[i - 1];
+        to->need[i] = 0;
+        if (sample_is_last(s, i) || (to->keep[i] && s->owner[i + 1] != s->owner[i]))
+            continue;
+        to->need[i] = need_of(&s->point[i], &s->point[i + 1], map, limits);
+        most += (int64_t)to->need[i] + 2;
+    }
+    return most;
+}
+
+/* The last of several pieces mustn't fail by what rounding adds to the sum of their needs. */
+static void spread_lines(spread *to, const samples *s, const chart *map) {
+    for (int64_t i = 0; i < s->count; i++) {
+        if (sample_is_last(s, i))
+            continue;
+        int64_t end = line_end(s, i);
+        double sum = 0;
+        for (int64_t k = i; k < end; k++)
+            sum += to->need[k];
+        double pieces = ceil(sum / enough);
+        if (pieces > 1)
+            spread_line(to, s, map, (int64_t[2]){i, end}, sum / pieces * (1 + 1e-9));
+        i = end - 1;
+    }
+}
+
+static void merge_spread(samples *all, const samples *s, const spread *from) {
+    int64_t n = 0, taken = 0;
+    for (int64_t i = 0; i < s->count; i++) {
+        all->flat[n] = s->flat[i];
+        all->point[n] = s->point[i];
+        all->owner[n] = s->owner[i];
+        all->keep[n++] = from->keep[i];
+        for (; taken < from->added.count && from->after[taken] == i; taken++) {
+            all->flat[n] = from->added.flat[taken];
+            all->point[n] = from->added.point[taken];
+            all->owner[n] = s->owner[i];
+            all->keep[n++] = 1;
+        }
+    }
+}
+
+iso_status sample_spread(samples *s, const chart *map, const sample_limits *limits,
+                         iso_arena *arena) {
+    spread to;
+    samples all;
+    ISO_TRY(ISO_PUSH(to.keep, arena, s->count));
+    ISO_TRY(ISO_PUSH(to.need, arena, s->count));
+    int64_t most = measure_needs(&to, s, map, limits);
+    ISO_TRY(push_samples(&to.added, most, arena));
+    ISO_TRY(ISO_PUSH(to.after, arena, most));
+    to.added.count = 0;
+    spread_lines(&to, s, map);
+    ISO_TRY(chart_layer(to.added.point, map, to.added.flat, limits->layer, to.added.count));
+    ISO_TRY(push_samples(&all, s->count + to.added.count, arena));
+    ISO_TRY(ISO_PUSH(all.keep, arena, all.count));
+    merge_spread(&all, s, &to);
+    *s = all;
     return ISO_OK;
 }

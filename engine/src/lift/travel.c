@@ -47,13 +47,19 @@ static void put(iso_paths *out, const lift_task *t, iso_vec3 at, const chart_poi
                     .z = iso_units(at.z - t->options->z)};
 }
 
-/* `height` mm above the layer. Upwards where layers are heights: so x and y stay what they are on
- * the way there. Outside the part a layer may lie lower than the bed, the nozzle may not. */
-static iso_vec3 above(const lift_task *t, const chart_point *on, double height) {
+iso_vec3 lift_above(const lift_task *task, const chart_point *on, double height) {
     iso_vec3 at = on->at;
-    if (chart_kind_of(t->chart) != CHART_GRAPH)
+    if (chart_kind_of(task->chart) != CHART_GRAPH)
         return vec3_along(at, height, on->normal);
-    at.z = fmax(at.z, 0) + height / on->normal.z;
+    at.z += height / on->normal.z;
+    return at;
+}
+
+/* Outside the part a layer may lie lower than the bed; the nozzle may not. */
+static iso_vec3 above(const lift_task *t, const chart_point *on, double height) {
+    iso_vec3 at = lift_above(t, on, height);
+    if (chart_kind_of(t->chart) == CHART_GRAPH)
+        at.z = fmax(at.z, height);
     return at;
 }
 
@@ -88,6 +94,8 @@ static iso_status put_near(iso_paths *out, const lift_task *t, iso_path *path, i
     path->travel_first = out->travel_count;
     path->travel_count = 1;
     put(out, t, t->samples.point[to].at, &t->samples.point[to]);
+    out->travel[path->travel_first] = out->vertex[path->first].at;
+    out->travel_frame[path->travel_first].z = out->vertex[path->first].z;
     return ISO_OK;
 }
 
@@ -195,6 +203,7 @@ iso_status lift_travels(iso_paths *out, lift_task *task) {
     way *ways;
     int32_t count;
     t.limits.tolerance = fmax(o->tolerance, coarse * o->clearance);
+    t.limits.bump = t.limits.tolerance;
     t.limits.turn = wide_turn * o->turn;
     t.limits.share = 0;
     t.limits.layer[1] = 0;
