@@ -297,6 +297,25 @@ static void test_travel_follows_its_points(void) {
     iso_paths_free(&layer);
 }
 
+/* Up by 1 mm, along by 1.5 mm and down again is no more than 2 mm along the layer. */
+static void test_short_ways_dont_retract(void) {
+    iso_vec3 up[3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    iso_vec3 low[2] = {{10, 10, 1}, {20, 10, 7}}, high[2] = {{20, 11.5, 7}, {10, 11.5, 3}};
+    iso_vec3 way[2] = {{20, 10, 8}, {20, 11.5, 8}};
+    iso_paths layer = {0};
+    add_path(&layer, &(iso_path){.role = ISO_ROLE_PERIMETER}, low, up, 2, 0.2);
+    add_path(&layer, &(iso_path){.role = ISO_ROLE_PERIMETER}, high, up, 2, 0.2);
+    add_travel(&layer, way, up, 2, 0.2);
+    iso_gcode_options o = plain();
+    iso_gcode_totals totals;
+    free(print_layers(&totals, &o, &layer, 1, "XYZAB"));
+    CHECK_EQUAL(2, totals.retractions); /* of the beginning and the end */
+    o.retract_before_travel = 1.4;
+    free(print_layers(&totals, &o, &layer, 1, "XYZAB"));
+    CHECK_EQUAL(3, totals.retractions);
+    iso_paths_free(&layer);
+}
+
 /* Nobody knows a way: over all that is printed (7 mm), and straight down. */
 static void test_unknown_ways_go_over_all(void) {
     iso_paths layer = two_lines(false);
@@ -729,6 +748,7 @@ int main(void) {
     RUN(test_flow_is_limited_by_the_section_in_space);
     RUN(test_heights_are_said_in_steps);
     RUN(test_travel_follows_its_points);
+    RUN(test_short_ways_dont_retract);
     RUN(test_unknown_ways_go_over_all);
     RUN(test_flat_layers_after_curved_ones);
     RUN(test_watch_sees_the_file);

@@ -350,26 +350,27 @@ static void travel_step(iso_head *head, const stand *to) {
         go_over(head, to, &(stroke){.feed = head->travel_feed, .comment = "travel"}, 0);
 }
 
-static double mm_of_travel(const iso_head *head, const iso_paths *paths, const iso_path *path,
-                           const stand *to) {
+/* How far the nozzle goes before it drips where it is seen: along the layer, without the ways up
+ * from it and down again at both ends. */
+static double mm_along_layer(const iso_head *head, const iso_paths *paths, const iso_path *path,
+                             const stand *to) {
     stand from = here(head);
     iso_vec3 normal, at = tip_of(&normal, head, &from);
-    double sum = 0;
-    for (int32_t i = 0; i <= path->travel_count; i++) {
-        stand step =
-            i < path->travel_count ? travel_stand(head, paths, path->travel_first + i) : *to;
+    double straight = vec3_distance(at, tip_of(&normal, head, to)), sum = 0;
+    for (int32_t i = 0; i < path->travel_count; i++) {
+        stand step = travel_stand(head, paths, path->travel_first + i);
         iso_vec3 next = tip_of(&normal, head, &step);
-        sum += vec3_distance(at, next);
+        sum += i > 0 ? vec3_distance(at, next) : 0;
         at = next;
     }
-    return sum;
+    return larger(straight, sum);
 }
 
 static void travel(iso_head *head, const iso_paths *paths, const iso_path *path, const stand *to) {
     stand from = here(head);
     bool known = is_known(head), away = !known || head->doubtful || !is_same(&from, to);
     if (!known || (away && path->retract != ISO_RETRACT_NOT &&
-                   mm_of_travel(head, paths, path, to) > head->options->retract_before_travel))
+                   mm_along_layer(head, paths, path, to) > head->options->retract_before_travel))
         iso_head_retract(head);
     if (away) {
         iso_modes_accelerate_travel(&head->modes, head->travel_acceleration);

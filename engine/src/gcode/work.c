@@ -9,27 +9,32 @@ static double length_between(const iso_path_vertex *a, const iso_path_vertex *b)
     return sqrt(dx * dx + dy * dy + dz * dz); /* of an integer below 2^53: rounded once */
 }
 
-/* From `end` by way of the points where the travel turns. */
-static double length_of_travel(const iso_paths *paths, const iso_path *path,
+/* From `end` by way of the points where the travel turns; and what of that goes along the layer,
+ * without the ways up from it and down again where it isn't flat. */
+static double length_of_travel(double *along, const iso_paths *paths, const iso_path *path,
                                const iso_path_vertex *end) {
     iso_path_vertex at = *end;
-    double sum = 0;
+    double sum = 0, up = 0;
     for (int32_t i = 0; i < path->travel_count; i++) {
         iso_path_vertex turn = at;
         turn.at = paths->travel[path->travel_first + i];
         if (paths->travel_frame)
             turn.z = paths->travel_frame[path->travel_first + i].z;
         sum += length_between(&at, &turn);
+        up = i == 0 && paths->travel_frame ? sum : up;
         at = turn;
     }
-    return sum + length_between(&at, &paths->vertex[path->first]);
+    double down = length_between(&at, &paths->vertex[path->first]);
+    *along = paths->travel_frame && path->travel_count > 0 ? sum - up : sum + down;
+    return sum + down;
 }
 
 /* Does the path turn by more than 45 degrees behind vertex b? */
 static int turns(const iso_path_vertex *a, const iso_path_vertex *b, const iso_path_vertex *c,
                  double ab, double bc) {
     double dot = ((double)b->at.x - a->at.x) * ((double)c->at.x - b->at.x) +
-                 ((double)b->at.y - a->at.y) * ((double)c->at.y - b->at.y);
+                 ((double)b->at.y - a->at.y) * ((double)c->at.y - b->at.y) +
+                 ((double)b->z - a->z) * ((double)c->z - b->z);
     return dot < 0.7 * ab * bc;
 }
 
@@ -95,9 +100,9 @@ void iso_work_measure(iso_layer_work *work, double *length, const iso_paths *pat
             continue;
         measure_path(work, length + path->first, path, vertex, pace);
         if (end) {
-            double units = length_of_travel(paths, path, end);
+            double along, units = length_of_travel(&along, paths, path, end);
             work->other_time += travel_time(head, units / ISO_UNITS_PER_MM);
-            if (path->retract != ISO_RETRACT_NOT && units > shortest)
+            if (path->retract != ISO_RETRACT_NOT && along > shortest)
                 work->other_time += retraction_time;
         }
         end = &vertex[path->closed ? 0 : path->count - 1];
