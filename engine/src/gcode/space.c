@@ -168,7 +168,8 @@ static char *put_fine_feed(iso_head *head, char *p, const stand *a, const stand 
     int inverse = head->options->rotary_feed == ISO_FEED_INVERSE_TIME;
     double feed = 60 * (inverse ? 1 : counted(a, b)) / time;
     int64_t digits = (int64_t)larger(floor(feed * 1e4), 1);
-    digits -= digits >= 10000000 ? digits % 10000 : digits >= 100000 ? digits % 100 : 0;
+    int64_t coarse = digits >= 100000000 ? 100000 : digits >= 10000000 ? 10000 : 100;
+    digits -= digits >= 100000 ? digits % coarse : 0;
     if (!inverse && digits == head->fine_feed)
         return p;
     head->fine_feed = digits;
@@ -223,9 +224,25 @@ static char *put_axes(const iso_head *head, char *p, const stand *from, const st
     return p;
 }
 
+/* While the part turns, X, Y and Z stay where they are if they are right within SPACE_STILL: a
+ * firmware whose F counts them would else brake for a move of 1 um that is but rounding. */
+static stand steadied(const stand *from, const stand *to) {
+    stand steady = *to;
+    int32_t *axis[3] = {&steady.x, &steady.y, &steady.z};
+    const int32_t old[3] = {from->x, from->y, from->z};
+    if (from->angle[0] == to->angle[0] && from->angle[1] == to->angle[1])
+        return steady;
+    for (int i = 0; i < 3; i++)
+        if (*axis[i] - old[i] >= -SPACE_STILL && *axis[i] - old[i] <= SPACE_STILL)
+            *axis[i] = old[i];
+    return steady;
+}
+
 /* All axes straight to where they are to stand; the E that is due goes along with a bead. */
-static void go(iso_head *head, const stand *to, const stroke *s) {
+static void go(iso_head *head, const stand *goal, const stroke *s) {
     stand from = here(head);
+    stand steady = head->machine && is_known(head) ? steadied(&from, goal) : *goal;
+    const stand *to = &steady;
     bool known = is_known(head), timed = head->machine && known;
     iso_vec3 normal;
     double time = 0;

@@ -11,6 +11,7 @@
 #define SPACE_TOLERANCE                                                                            \
     0.02                /* mm that the tip may be off the chord while the axes turn: on its way    \
                          * around a mandrel it is so by as much as the chord is off the arc */
+#define SPACE_STILL 2   /* um by which X, Y and Z may be off while the part turns */
 #define SPACE_SAID 0.05 /* share by which width or height change before it is said again */
 #define SPACE_CLEARANCE 1.0 /* mm over all that is printed */
 #define SPACE_TURN 0.966    /* cosine: a travel that turns the part by more goes around it */
