@@ -62,7 +62,7 @@ static double highest(field_value_at *value_at, const void *context, const inter
         double size = box[c].high - box[c].low;
         at[c] = low >= 0 ? box[c].high : high <= 0 ? box[c].low : box[c].low + 0.5 * size;
         if (low < 0 && high > 0 && size > 0)
-            reach += 0.5 * size * fmax(-low, high);
+            reach += 0.5 * size * most_of(-low, high);
     }
     interval value = value_at(context, (iso_vec3){at[0], at[1], at[2]});
     if (sign < 0)

@@ -14,16 +14,17 @@ static double product(double a, double b) {
 static const double least_product = 0x1p-1060;
 
 interval interval_multiply(interval a, interval b) {
-    if (interval_is(a, 0) || interval_is(b, 0))
-        return interval_at(0);
-    if (interval_is(a, 1))
-        return b;
-    if (interval_is(b, 1))
-        return a;
-    double p = product(a.low, b.low), q = product(a.low, b.high), r = product(a.high, b.low),
-           s = product(a.high, b.high);
-    interval c = interval_rounded(fmin(fmin(p, q), fmin(r, s)) - least_product,
-                                  fmax(fmax(p, q), fmax(r, s)) + least_product);
+    if (a.low == a.high && interval_is_finite(a))
+        return a.low == 1 ? b : interval_scale(a.low, b);
+    if (b.low == b.high && interval_is_finite(b))
+        return b.low == 1 ? a : interval_scale(b.low, a);
+    double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, t = a.high * b.high;
+    if (!interval_is_finite(a) || !interval_is_finite(b)) {
+        p = product(a.low, b.low), q = product(a.low, b.high);
+        r = product(a.high, b.low), t = product(a.high, b.high);
+    }
+    interval c = interval_rounded(least_of(least_of(p, q), least_of(r, t)) - least_product,
+                                  most_of(most_of(p, q), most_of(r, t)) + least_product);
     bool positive = (a.low >= 0 && b.low >= 0) || (a.high <= 0 && b.high <= 0);
     bool negative = (a.low >= 0 && b.high <= 0) || (a.high <= 0 && b.low >= 0);
     if (positive && c.low < 0)
@@ -73,7 +74,7 @@ static bool is_anywhere(interval a) {
 
 /* Between a and b, but where the greatest or least value is met on the way. */
 static interval wave_between(double a, double b, bool top, bool bottom) {
-    interval c = interval_outward(fmin(a, b), fmax(a, b), series_error);
+    interval c = interval_outward(least_of(a, b), most_of(a, b), series_error);
     return (interval){bottom || c.low < -1 ? -1 : c.low, top || c.high > 1 ? 1 : c.high};
 }
 
@@ -98,14 +99,18 @@ interval interval_angle(bool *jumps, interval y, interval x) {
         return interval_outward(-pi, pi, series_error);
     double p = series_arctangent2(y.low, x.low), q = series_arctangent2(y.low, x.high),
            r = series_arctangent2(y.high, x.low), s = series_arctangent2(y.high, x.high);
-    return interval_outward(fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)),
-                            series_error);
+    return interval_outward(least_of(least_of(p, q), least_of(r, s)),
+                            most_of(most_of(p, q), most_of(r, s)), series_error);
+}
+
+static inline double norm(double a, double b) {
+    double square = a * a + b * b;
+    return square > 1e-270 && square < 1e270 ? sqrt(square) : series_hypotenuse(a, b);
 }
 
 interval interval_norm(interval a, interval b) {
     interval s = interval_abs(a), t = interval_abs(b);
-    interval c = interval_outward(series_hypotenuse(s.low, t.low),
-                                  series_hypotenuse(s.high, t.high), 0x1p-50);
+    interval c = interval_outward(norm(s.low, t.low), norm(s.high, t.high), 0x1p-50);
     return s.low == 0 && t.low == 0 ? (interval){0, c.high} : c;
 }
 
@@ -116,7 +121,7 @@ static double share(double a, interval rest, bool up) {
         return 0;
     if (fabs(a) >= HUGE_VAL || least == 0)
         return a > 0 ? 1 : -1;
-    return least < HUGE_VAL ? a / series_hypotenuse(a, least) : 0;
+    return least < HUGE_VAL ? a / norm(a, least) : 0;
 }
 
 interval interval_share(interval a, interval rest) {

@@ -13,6 +13,13 @@ typedef struct interval {
     double low, high;
 } interval;
 
+/* What fmin and fmax are for numbers, without a call. */
+static inline double least_of(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double most_of(double a, double b) {
+    return a > b ? a : b;
+}
 static inline interval interval_whole(void) {
     return (interval){-HUGE_VAL, HUGE_VAL};
 }
@@ -40,11 +47,11 @@ static inline interval interval_rounded(double low, double high) {
     return interval_outward(low, high, 0x1p-52);
 }
 static inline interval interval_hull(interval a, interval b) {
-    return (interval){a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
+    return (interval){least_of(a.low, b.low), most_of(a.high, b.high)};
 }
 /* Both hold; where rounding keeps them apart, the first. */
 static inline interval interval_both(interval a, interval b) {
-    interval c = {a.low > b.low ? a.low : b.low, a.high < b.high ? a.high : b.high};
+    interval c = {most_of(a.low, b.low), least_of(a.high, b.high)};
     return c.low <= c.high ? c : a;
 }
 static inline interval interval_negate(interval a) {
@@ -56,10 +63,25 @@ static inline interval interval_add(interval a, interval b) {
 static inline interval interval_subtract(interval a, interval b) {
     return interval_rounded(a.low - b.high, a.high - b.low);
 }
+/* By a finite number. Products may become subnormal, where an error has no relation to their size:
+ * so a little more than rounding. */
+static inline interval interval_scale(double by, interval a) {
+    const double least_product = 0x1p-1060;
+    if (by == 0)
+        return (interval){0, 0};
+    interval c = by > 0 ? (interval){by * a.low, by * a.high} : (interval){by * a.high, by * a.low};
+    c = interval_rounded(c.low - least_product, c.high + least_product);
+    return (interval){a.low == 0 && by > 0    ? 0
+                      : a.high == 0 && by < 0 ? 0
+                                              : c.low,
+                      a.high == 0 && by > 0  ? 0
+                      : a.low == 0 && by < 0 ? 0
+                                             : c.high};
+}
 static inline interval interval_abs(interval a) {
     return a.low >= 0    ? a
            : a.high <= 0 ? interval_negate(a)
-                         : (interval){0, -a.low > a.high ? -a.low : a.high};
+                         : (interval){0, most_of(-a.low, a.high)};
 }
 
 interval interval_multiply(interval a, interval b);

@@ -105,7 +105,23 @@ OPERATION1(apply_atan, series_arctangent(a))
 OPERATION2(apply_atan2, series_arctangent2(a, b))
 OPERATION1(apply_exp, series_exp(a))
 OPERATION1(apply_log, series_log(a))
-OPERATION2(apply_hypot, series_hypotenuse(a, b))
+
+/* As series_hypotenuse has it: that is for squares that leave the range, which are few, so that the
+ * compiler makes vectors of the rest. */
+static void apply_hypot(double *to, const double *const *from, int32_t count) {
+    const double *a = from[0], *b = from[1];
+    int32_t common = 0;
+    for (int32_t i = 0; i < count; i++) {
+        double square = a[i] * a[i] + b[i] * b[i];
+        common += square > 1e-270 && square < 1e270;
+    }
+    if (common < count)
+        for (int32_t i = 0; i < count; i++)
+            to[i] = series_hypotenuse(a[i], b[i]);
+    else
+        for (int32_t i = 0; i < count; i++)
+            to[i] = sqrt(a[i] * a[i] + b[i] * b[i]);
+}
 
 static void apply_ramp(double *to, const double *const *from, int32_t count) {
     for (int32_t i = 0; i < count; i++)

@@ -44,9 +44,8 @@ static void plane_bound(iso_field_bound *bound, const iso_field *field, iso_vec3
     iso_vec3 n = shape_of(field)->shape.axis;
     interval box[3], gradient[3] = {interval_at(n.x), interval_at(n.y), interval_at(n.z)};
     field_box(box, low, high);
-    interval value = interval_add(interval_multiply(gradient[0], box[0]),
-                                  interval_multiply(gradient[1], box[1]));
-    value = interval_add(value, interval_multiply(gradient[2], box[2]));
+    interval value = interval_add(interval_scale(n.x, box[0]), interval_scale(n.y, box[1]));
+    value = interval_add(value, interval_scale(n.z, box[2]));
     field_bound_set(bound, value, gradient);
 }
 
@@ -127,11 +126,10 @@ static void cone_bound(iso_field_bound *bound, const iso_field *field, iso_vec3 
     const shape_field *f = shape_of(field);
     interval x = beside(low.x, high.x, f->shape.center.x);
     interval y = beside(low.y, high.y, f->shape.center.y);
-    interval sine = interval_at(f->sine), cosine = interval_at(f->cosine);
-    interval gradient[3] = {interval_multiply(sine, interval_share(x, y)),
-                            interval_multiply(sine, interval_share(y, x)), cosine};
-    interval upright = interval_multiply((interval){low.z, high.z}, cosine);
-    interval value = interval_add(upright, interval_multiply(interval_norm(x, y), sine));
+    interval gradient[3] = {interval_scale(f->sine, interval_share(x, y)),
+                            interval_scale(f->sine, interval_share(y, x)), interval_at(f->cosine)};
+    interval upright = interval_scale(f->cosine, (interval){low.z, high.z});
+    interval value = interval_add(upright, interval_scale(f->sine, interval_norm(x, y)));
     field_bound_set(bound, value, gradient);
 }
 
@@ -209,11 +207,11 @@ static void wave_evaluate(double *value, iso_vec3 *gradient, const iso_field *fi
 static void wave_bound(iso_field_bound *bound, const iso_field *field, iso_vec3 low,
                        iso_vec3 high) {
     const shape_field *f = shape_of(field);
-    interval x = interval_multiply(interval_at(f->turn.x), (interval){low.x, high.x});
-    interval y = interval_multiply(interval_at(f->turn.y), (interval){low.y, high.y});
+    interval x = interval_scale(f->turn.x, (interval){low.x, high.x});
+    interval y = interval_scale(f->turn.y, (interval){low.y, high.y});
     interval sine, cosine;
     interval_sine_cosine(&sine, &cosine, interval_add(x, y));
-    interval height = interval_multiply(interval_at(f->amplitude), sine);
+    interval height = interval_scale(f->amplitude, sine);
     interval by_x = interval_rounded(f->amplitude * f->turn.x, f->amplitude * f->turn.x);
     interval by_y = interval_rounded(f->amplitude * f->turn.y, f->amplitude * f->turn.y);
     interval gradient[3] = {interval_multiply(by_x, cosine), interval_multiply(by_y, cosine),

@@ -8,10 +8,13 @@ static const double series_error = 8e-15;
 static void chain(spread *to, const interval *by, const spread *const *from, int32_t operands,
                   int32_t slopes) {
     for (int32_t c = 0; c < slopes; c++) {
-        interval sum = interval_multiply(by[0], from[0]->slope[c]);
-        for (int32_t k = 1; k < operands; k++)
-            if (!interval_is(from[k]->slope[c], 0))
-                sum = interval_add(sum, interval_multiply(by[k], from[k]->slope[c]));
+        interval sum = interval_at(0);
+        for (int32_t k = 0; k < operands; k++) {
+            if (interval_is(from[k]->slope[c], 0))
+                continue;
+            interval part = interval_multiply(by[k], from[k]->slope[c]);
+            sum = interval_is(sum, 0) ? part : interval_add(sum, part);
+        }
         to->slope[c] = sum;
     }
 }
@@ -111,8 +114,8 @@ static interval whole_power(interval a, double n) {
 static interval general_power(interval a, interval b) {
     double p = series_power(a.low, b.low), q = series_power(a.low, b.high),
            r = series_power(a.high, b.low), s = series_power(a.high, b.high);
-    return interval_outward(fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)) + 0x1p-1060,
-                            series_error);
+    return interval_outward(least_of(least_of(p, q), least_of(r, s)),
+                            most_of(most_of(p, q), most_of(r, s)) + 0x1p-1060, series_error);
 }
 
 static interval positive_log(interval a) {
@@ -240,7 +243,7 @@ void spread_min(spread *to, const spread *const *from, int32_t slopes) {
         *to = *from[a.high < b.low ? 0 : 1];
     } else {
         either(to, from[0], from[1], slopes);
-        to->value.high = fmin(a.high, b.high);
+        to->value.high = least_of(a.high, b.high);
     }
 }
 
@@ -252,7 +255,7 @@ void spread_max(spread *to, const spread *const *from, int32_t slopes) {
         *to = *from[a.low > b.high ? 0 : 1];
     } else {
         either(to, from[0], from[1], slopes);
-        to->value.low = fmax(a.low, b.low);
+        to->value.low = most_of(a.low, b.low);
     }
 }
 
