@@ -287,6 +287,16 @@ ISO_API iso_status iso_slice_double_link(iso_coloured_link *out, const iso_doubl
                                          const double *height, const double *level,
                                          int32_t level_count) ISO_MUST_CHECK;
 
+/* The same by a field, on a surface in R^3: heights are its values at the darts' places, and
+ * crossings lie where it has the level on the edge, within 1 um. Darts stay what they are, so
+ * nothing is split here: ISO_UNSLICEABLE, naming the face, where a level may cross a face in more
+ * than one line (or an edge more than once) for all that the field's bounds tell. Finer faces help;
+ * so does iso_slice_field, which splits them. */
+ISO_API iso_status iso_slice_double_link_field(iso_coloured_link *out,
+                                               const iso_double_link *surface,
+                                               const iso_field *field, const double *level,
+                                               int32_t level_count) ISO_MUST_CHECK;
+
 /* ---- Contour filling (paper, 4.2) ---- */
 
 /* Index d = 2 c + side: crossing c of a sweep line with the boundary, below or above the line.

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "height/height.h"
 #include "slice/curves.h"
 #include "slice/refine.h"
 
@@ -44,6 +45,17 @@ static iso_status slice(iso_curves *curves, refined *r, const double *level, int
     return curves_slice(curves, &view, level, count);
 }
 
+/* What is measured along the mesh itself is linear in its triangles. */
+static iso_status slice_geodesic(iso_curves *curves, const iso_mesh *mesh, const iso_field *field,
+                                 const double *level, int32_t level_count) {
+    double *height;
+    ISO_TRY(ISO_ALLOCATE(height, mesh->vertex_count));
+    height_of_vertices(height, field, mesh);
+    iso_status status = iso_slice_heights(curves, mesh, height, level, level_count);
+    iso_release(height);
+    return status;
+}
+
 iso_status iso_slice_field(iso_curves *curves, const iso_mesh *mesh, const iso_field *field,
                            const double *level, int32_t level_count,
                            const iso_field_slicing *options) {
@@ -54,6 +66,8 @@ iso_status iso_slice_field(iso_curves *curves, const iso_mesh *mesh, const iso_f
         options = &usual;
     ISO_TRY(check_options(options));
     ISO_TRY(curves_check_levels(level, level_count));
+    if (iso_field_kind_of(field) == ISO_FIELD_GEODESIC)
+        return slice_geodesic(curves, mesh, field, level, level_count);
     iso_status status = refined_begin(&r, mesh, field);
     if (status == ISO_OK)
         status = slice(curves, &r, level, level_count, options);
