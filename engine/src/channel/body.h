@@ -4,6 +4,7 @@
 
 #include <isoslice/channel.h>
 
+#include "channel/keep.h"
 #include "channel/ring.h"
 #include "channel/route.h"
 #include "channel/sweep.h"
@@ -18,7 +19,7 @@ struct iso_channels {
     iso_channel_options options;
     const iso_mesh *mesh;
     iso_arena arena; /* towers, rings, skins */
-    iso_closest *part;
+    part_space part;
     tower *tower;
     int32_t tower_count;
     double start, bend, reach; /* as used; reach of the section */

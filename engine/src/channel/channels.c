@@ -6,6 +6,10 @@ enum { LEVELS_LEAST = 81, LEVELS_MOST = 2000, SAMPLES_LEAST = 100, SAMPLES_MOST 
 /* Contours a pitch, points of a ring a depth: with fewer, corners are cut off. */
 #define LEVELS_A_PITCH 8
 #define SAMPLES_A_DEPTH 10
+/* With levels by the pitch, more of them if a pitch turns out to be wrong by more than this: parts
+ * with threads or steps are longer along their surface than their contours a pitch / 8 apart. */
+#define PITCH_ERROR 1e-3
+enum { REFINEMENTS = 2, REFINED = 3 };
 /* Points of a channel a radius of its bends: a circle then has 31 and is 0.2 % too short. */
 #define STEPS_A_BEND 5
 /* Of the depth, to both sides: the surface's slope is the mean of so much. */
@@ -104,17 +108,6 @@ static iso_status settle(iso_channels *c) {
     return ISO_OK;
 }
 
-static iso_status plant_part(iso_channels *c) {
-    int64_t darts = 3 * (int64_t)c->mesh->triangle_count;
-    iso_vec3 *corner;
-    ISO_TRY(ISO_ALLOCATE(corner, darts));
-    for (int64_t a = 0; a < darts; a++)
-        corner[a] = c->mesh->position[c->mesh->origin[a]];
-    iso_status status = closest_new(&c->part, corner, c->mesh->triangle_count);
-    iso_release(corner);
-    return status;
-}
-
 // Rings
 
 static iso_status build_towers(iso_channels *c) {
@@ -129,7 +122,7 @@ static iso_status build_towers(iso_channels *c) {
 
 static iso_status ring_off(curve *out, iso_channels *c, const tower *t, double f, ring *outline,
                            iso_arena *arena) {
-    ring_offset offset = {c->options.depth, c->bend / STEPS_A_BEND, c->part};
+    ring_offset offset = {c->options.depth, c->bend / STEPS_A_BEND, c->part.tree};
     int32_t folds;
     ISO_TRY(ring_of_tower(outline, t, f, SLOPE_REACH * c->options.depth, arena));
     ISO_TRY(ring_push_off(out, &folds, outline, &offset));
@@ -173,7 +166,8 @@ static iso_vec3 off_part(const iso_channels *c, iso_vec3 p) {
 
 /* The channel takes the curve over, whatever comes of it. */
 static iso_status add_channel(iso_channels *c, curve *line, const double leg[2]) {
-    iso_status status = curve_relax(line, c->bend, c->bend / STEPS_A_BEND, 2);
+    keeping keep = {c->options.depth, c->bend, c->bend / STEPS_A_BEND, 2};
+    iso_status status = keep_off(line, &c->part, &keep);
     if (status == ISO_OK)
         status = ISO_GROW(c->channel, c->channel_capacity, c->figures.channel_count + 1);
     channel made = {.line = *line, .leg = {leg[0], leg[1]}};
@@ -199,30 +193,40 @@ static iso_status add_ported(iso_channels *c, const curve *way) {
 
 static iso_status add_ring(iso_channels *c, curve *pushed) {
     static const double none[2] = {0, 0};
+    double middle = NAN;
     curve way;
     if (c->options.ports == ISO_CHANNEL_CLOSED)
         return add_channel(c, pushed, none);
-    ISO_TRY(route_open(&way, pushed, &c->side));
+    ISO_TRY(route_open(&way, &middle, pushed, &c->side));
     iso_status status = add_ported(c, &way);
     curve_free(&way);
     return status;
 }
 
+typedef struct series {
+    curve way;
+    int32_t rings;
+    double last;   /* height of the last ring */
+    double middle; /* between its ends, along the side */
+} series;
+
 /* Steps of the way from ring to ring, on the part's offset too. */
 enum { STAIRS = 4 };
 
-static iso_status append_stairs(curve *way, iso_channels *c, const tower *t, double f, bool right) {
+static iso_status append_stairs(series *s, iso_channels *c, const tower *t) {
+    bool right = s->rings % 2 == 1;
+    double middle = s->middle;
     for (int k = 1; k < STAIRS; k++) {
         iso_arena_mark mark = iso_arena_get_mark(&c->arena);
         ring outline;
         curve pushed = {0}, opened = {0};
         int32_t folds = c->figures.folds;
         iso_status status =
-            ring_off(&pushed, c, t, f + c->options.pitch * k / STAIRS, &outline, &c->arena);
+            ring_off(&pushed, c, t, s->last + c->options.pitch * k / STAIRS, &outline, &c->arena);
         if (status == ISO_OK)
-            status = route_open(&opened, &pushed, &c->side);
-        if (status == ISO_OK)
-            status = curve_add(way, opened.point[right ? 0 : opened.count - 1]);
+            status = route_open(&opened, &middle, &pushed, &c->side);
+        if (status == ISO_OK && middle == s->middle)
+            status = curve_add(&s->way, opened.point[right ? 0 : opened.count - 1]);
         curve_free(&pushed);
         curve_free(&opened);
         iso_arena_pop(&c->arena, mark);
@@ -233,24 +237,19 @@ static iso_status append_stairs(curve *way, iso_channels *c, const tower *t, dou
     return ISO_OK;
 }
 
-typedef struct series {
-    curve way;
-    int32_t rings;
-    double last; /* height of the last ring */
-} series;
-
 /* There and back: each ring begins at the end where the one below ends. */
 static iso_status add_to_series(iso_channels *c, series *s, const tower *t, double f,
                                 const curve *pushed) {
     curve opened;
-    bool right = s->rings % 2 == 1; /* where this ring begins */
+    double middle = s->rings > 0 ? s->middle : NAN;
     if (s->rings > 0)
-        ISO_TRY(append_stairs(&s->way, c, t, s->last, right));
-    ISO_TRY(route_open(&opened, pushed, &c->side));
-    iso_status status = route_append(&s->way, &opened, !right);
+        ISO_TRY(append_stairs(s, c, t));
+    ISO_TRY(route_open(&opened, &middle, pushed, &c->side));
+    iso_status status = route_append(&s->way, &opened, s->rings % 2 == 0);
     curve_free(&opened);
     s->rings++;
     s->last = f;
+    s->middle = middle;
     return status;
 }
 
@@ -349,7 +348,7 @@ static iso_status find_figures(iso_channels *c) {
 
 static iso_status build(iso_channels *c) {
     ISO_TRY(settle(c));
-    ISO_TRY(plant_part(c));
+    ISO_TRY(part_space_new(&c->part, c->mesh));
     ISO_TRY(build_towers(c));
     ISO_TRY(add_all(c));
     ISO_TRY(find_figures(c));
@@ -357,11 +356,10 @@ static iso_status build(iso_channels *c) {
     return ISO_OK;
 }
 
-iso_status iso_channels_new(iso_channels **channels, const iso_mesh *mesh,
-                            const iso_channel_options *options) {
+static iso_status make(iso_channels **channels, const iso_mesh *mesh,
+                       const iso_channel_options *options) {
     iso_channels *c;
     *channels = NULL;
-    ISO_TRY(check_options(options));
     ISO_TRY(ISO_ALLOCATE(c, 1));
     *c = (iso_channels){.options = *options, .mesh = mesh};
     iso_status status = build(c);
@@ -372,6 +370,29 @@ iso_status iso_channels_new(iso_channels **channels, const iso_mesh *mesh,
     return status;
 }
 
+iso_status iso_channels_new(iso_channels **channels, const iso_mesh *mesh,
+                            const iso_channel_options *options) {
+    iso_channel_options finer = *options;
+    *channels = NULL;
+    ISO_TRY(check_options(options));
+    ISO_TRY(make(channels, mesh, options));
+    for (int turn = 0; turn < REFINEMENTS && options->levels == 0; turn++) {
+        iso_channels *better;
+        double error = (*channels)->figures.pitch_max;
+        finer.levels = REFINED * ((*channels)->options.levels - 1) + 1;
+        if (error <= PITCH_ERROR || finer.levels > LEVELS_MOST)
+            break;
+        if (make(&better, mesh, &finer) != ISO_OK)
+            break; /* as between threads of a screw: the coarser ones will do */
+        bool is_better = better->figures.pitch_max < error;
+        iso_channels_free(is_better ? *channels : better);
+        if (!is_better)
+            break;
+        *channels = better;
+    }
+    return ISO_OK;
+}
+
 void iso_channels_free(iso_channels *c) {
     if (!c)
         return;
@@ -380,7 +401,7 @@ void iso_channels_free(iso_channels *c) {
     iso_release(c->channel);
     iso_release(c->ring);
     iso_release(c->outline);
-    closest_free(c->part);
+    part_space_free(&c->part);
     iso_arena_free(&c->arena);
     iso_release(c);
 }

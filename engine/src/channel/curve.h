@@ -30,8 +30,9 @@ double curve_radius(const curve *c, int32_t i);
 double curve_least_radius(int32_t *at, const curve *c);
 
 /* Make no bend narrower than `radius`, points about `step` apart: points of narrower ones are drawn
- * between their neighbours until it is so, or as far as it goes; a closed curve that can't be made so
- * stays as it is but for its points. The first and the last `fixed` points of an open one stay. */
+ * between their neighbours until it is so, or as far as it goes; a closed curve that can't be made
+ * so stays as it is but for its points. The first and the last `fixed` points of an open one stay.
+ */
 iso_status curve_relax(curve *c, double radius, double step, int32_t fixed) ISO_MUST_CHECK;
 
 #endif

@@ -12,11 +12,12 @@ typedef struct measure {
     int32_t count;
 } measure;
 
-/* The height of the nearest place of ring j; returns how far that is. */
-static double to_ring(double *height, const tower *t, int32_t j, iso_vec3 p) {
+/* The nearest place of ring j, and its height. */
+static iso_vec3 on_ring(double *height, const tower *t, int32_t j, iso_vec3 p) {
     const iso_vec3 *g = t->g + (int64_t)t->samples * j;
     const double *f = t->f + (int64_t)t->samples * j;
     double best = INFINITY;
+    iso_vec3 found = p;
     for (int32_t i = 0; i < t->samples; i++) {
         int32_t k = i + 1 < t->samples ? i + 1 : 0;
         iso_vec3 along = vec3_minus(g[k], g[i]), to = vec3_minus(p, g[i]);
@@ -25,10 +26,13 @@ static double to_ring(double *height, const tower *t, int32_t j, iso_vec3 p) {
         s = s < 0 ? 0 : s > 1 ? 1 : s;
         iso_vec3 off = vec3_along(to, -s, along);
         double distance = vec3_dot(off, off);
-        if (distance < best)
-            best = distance, *height = f[i] + s * (f[k] - f[i]);
+        if (distance < best) {
+            best = distance;
+            found = vec3_along(g[i], s, along);
+            *height = f[i] + s * (f[k] - f[i]);
+        }
     }
-    return sqrt(best);
+    return found;
 }
 
 static double z_of(const tower *t, int32_t j) {
@@ -52,14 +56,29 @@ static int32_t ring_below(const tower *t, double z) {
     return from;
 }
 
-/* How far p is off the tower; infinite off its ends. */
+enum { STEPS = 8 };
+
+/* How far p is off the tower; infinite off its ends. Between the nearest places of two rings it is
+ * where the line between them passes it: its own z says only which rings to begin with, for it may
+ * lie a little within the surface. */
 static double height_of(double *height, const tower *t, iso_vec3 p) {
     int32_t j = ring_below(t, p.z);
-    if (j < 0)
-        return INFINITY;
-    double below, above, down = to_ring(&below, t, j, p), up = to_ring(&above, t, j + 1, p);
-    *height = down + up > 0 ? (below * up + above * down) / (down + up) : below;
-    return down + up;
+    double off = INFINITY;
+    for (int k = 0, before = -1; k < STEPS && j >= 0; k++) {
+        double below, above;
+        iso_vec3 low = on_ring(&below, t, j, p), high = on_ring(&above, t, j + 1, p);
+        iso_vec3 along = vec3_minus(high, low);
+        double square = vec3_dot(along, along);
+        double s = square > 0 ? vec3_dot(vec3_minus(p, low), along) / square : 0;
+        int32_t next = s < 0 && j > 0 ? j - 1 : s > 1 && j + 2 < t->rings ? j + 1 : j;
+        *height = below + s * (above - below);
+        off = vec3_distance(p, vec3_along(low, s, along));
+        if (next == j || next == before)
+            break;
+        before = j;
+        j = next;
+    }
+    return off;
 }
 
 static const tower *tower_at(const measure *m, iso_vec3 p) {

@@ -1,18 +1,12 @@
 #include "channel/route.h"
 
-/* The edge of the ring that passes the middle of its width nearest to the side; -1: none. */
-static int32_t find_front(double *middle, const curve *ring, const port_side *side) {
-    double low = INFINITY, high = -INFINITY, front = -INFINITY;
+/* The edge of the ring that passes a place along the side nearest to it; -1: none. */
+static int32_t find_front(const curve *ring, double middle, const port_side *side) {
+    double front = -INFINITY;
     int32_t found = -1;
     for (int32_t i = 0; i < ring->count; i++) {
-        double x = vec3_dot(ring->point[i], side->along);
-        low = x < low ? x : low;
-        high = x > high ? x : high;
-    }
-    *middle = (low + high) / 2;
-    for (int32_t i = 0; i < ring->count; i++) {
         iso_vec3 a = ring->point[i], b = ring->point[i + 1 < ring->count ? i + 1 : 0];
-        double x = vec3_dot(a, side->along) - *middle, y = vec3_dot(b, side->along) - *middle;
+        double x = vec3_dot(a, side->along) - middle, y = vec3_dot(b, side->along) - middle;
         double at = vec3_dot(a, side->out);
         if ((x <= 0) != (y <= 0) && at > front)
             front = at, found = i;
@@ -47,25 +41,47 @@ static iso_status fail_small(const curve *ring, const port_side *side) {
                     at.x, at.y, at.z, curve_length(ring), 2 * side->half);
 }
 
-iso_status route_open(curve *out, const curve *ring, const port_side *side) {
-    double middle;
+static iso_status open_at(curve *out, bool *done, const curve *ring, double middle,
+                          const port_side *side) {
     iso_vec3 first, last;
-    *out = (curve){0};
-    int32_t n = ring->count, front = find_front(&middle, ring, side);
+    int32_t n = ring->count, front = find_front(ring, middle, side);
+    *done = false;
     if (front < 0)
-        return fail_small(ring, side);
+        return ISO_OK;
     double limit[2] = {middle - side->half, middle + side->half};
     int32_t ahead = walk(&first, ring, (front + 1) % n, 1, limit, side);
     int32_t back = walk(&last, ring, front, -1, limit, side);
     bool right = vec3_dot(first, side->along) > middle;
-    if (ahead + back + 8 > n || right == (vec3_dot(last, side->along) > middle))
-        return fail_small(ring, side);
+    if (ahead + back > n / 2 || right == (vec3_dot(last, side->along) > middle))
+        return ISO_OK;
     int32_t count = n - ahead - back, begin = front + 1 + ahead;
-    iso_status status = curve_add(out, right ? first : last);
-    for (int32_t k = 0; k < count && status == ISO_OK; k++)
-        status = curve_add(out, ring->point[(begin + (right ? k : count - 1 - k)) % n]);
-    if (status == ISO_OK)
-        status = curve_add(out, right ? last : first);
+    ISO_TRY(curve_add(out, right ? first : last));
+    for (int32_t k = 0; k < count; k++)
+        ISO_TRY(curve_add(out, ring->point[(begin + (right ? k : count - 1 - k)) % n]));
+    *done = true;
+    return curve_add(out, right ? last : first);
+}
+
+/* Places that are tried, in shares of the ring's width from its middle. */
+static const double tried[] = {0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4};
+enum { TRIED = sizeof tried / sizeof *tried };
+
+iso_status route_open(curve *out, double *middle, const curve *ring, const port_side *side) {
+    double low = INFINITY, high = -INFINITY;
+    bool done = false;
+    *out = (curve){0};
+    for (int32_t i = 0; i < ring->count; i++) {
+        double x = vec3_dot(ring->point[i], side->along);
+        low = x < low ? x : low;
+        high = x > high ? x : high;
+    }
+    iso_status status = isnan(*middle) ? ISO_OK : open_at(out, &done, ring, *middle, side);
+    for (int k = 0; k < TRIED && !done && status == ISO_OK; k++) {
+        *middle = low + (0.5 + tried[k]) * (high - low);
+        status = open_at(out, &done, ring, *middle, side);
+    }
+    if (status == ISO_OK && !done)
+        status = fail_small(ring, side);
     if (status != ISO_OK)
         curve_free(out);
     return status;

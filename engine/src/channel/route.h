@@ -12,9 +12,12 @@ typedef struct port_side {
     int32_t axis;        /* of `out`: 0 is x, 1 is y */
 } port_side;
 
-/* A ring opened where it is nearest to the side, at the middle of its width: from its end at larger
- * `along` around to the other. ISO_NOT_VERIFIED: the ring is too small for two ports. */
-iso_status route_open(curve *out, const curve *ring, const port_side *side) ISO_MUST_CHECK;
+/* A ring opened where it is nearest to the side: from its end at larger `along` around to the
+ * other. *middle between the ends is where it says, if it can be, else (or from NaN) at the middle
+ * of the ring's width or as near to that as can be; it comes back as it is. ISO_NOT_VERIFIED: the
+ * ring is too small for two ports. */
+iso_status route_open(curve *out, double *middle, const curve *ring,
+                      const port_side *side) ISO_MUST_CHECK;
 
 /* The open way between ports at both of its ends, leg[0] and leg[1] mm from the side. */
 iso_status route_ports(curve *out, double leg[2], const curve *way,

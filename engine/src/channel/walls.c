@@ -4,7 +4,6 @@
  * asked for the nearest triangle of another. Pieces that follow each other along a channel are left
  * alone: what is nearer along it than half a turn of its narrowest bend is the channel itself. */
 #include "channel/body.h"
-#include "solid/enclosed.h"
 
 #define PI 3.141592653589793
 
@@ -154,7 +153,7 @@ static void find_to_part(iso_channels *c) {
         const skin *s = &c->channel[i].skin;
         for (int64_t n = 0; n < (int64_t)s->sides * s->rows; n++) {
             double most = found->thickness;
-            double square = closest_square(c->part, s->point[n], most * most, &guess);
+            double square = closest_square(c->part.tree, s->point[n], most * most, &guess);
             if (square < most * most)
                 *found = (iso_channel_wall){sqrt(square), s->point[n], i, -1};
         }
@@ -163,29 +162,18 @@ static void find_to_part(iso_channels *c) {
 
 /* A channel that passes through the part has a point of its middle inside. */
 static iso_status find_inside(iso_channels *c) {
-    const iso_mesh *mesh = c->mesh;
-    iso_vec3 *corner;
-    uint8_t *inside = NULL;
-    enclosed_columns columns = {0};
-    int64_t darts = 3 * (int64_t)mesh->triangle_count;
-    ISO_TRY(ISO_ALLOCATE(corner, darts));
-    for (int64_t a = 0; a < darts; a++)
-        corner[a] = mesh->position[mesh->origin[a]];
-    iso_status status = enclosed_new(&columns, corner, mesh->triangle_count);
-    for (int32_t i = 0; i < c->figures.channel_count && status == ISO_OK; i++) {
+    for (int32_t i = 0; i < c->figures.channel_count; i++) {
         const curve *line = &c->channel[i].line;
-        status = ISO_ALLOCATE(inside, line->count);
-        if (status == ISO_OK)
-            status = enclosed_inside(&columns, inside, line->point, line->count);
+        uint8_t *inside;
+        ISO_TRY(ISO_ALLOCATE(inside, line->count));
+        iso_status status = enclosed_inside(&c->part.columns, inside, line->point, line->count);
         for (int32_t k = 0; k < line->count && status == ISO_OK; k++)
             if (inside[k])
                 c->figures.to_part = (iso_channel_wall){0, line->point[k], i, -1};
         iso_release(inside);
-        inside = NULL;
+        ISO_TRY(status);
     }
-    enclosed_free(&columns);
-    iso_release(corner);
-    return status;
+    return ISO_OK;
 }
 
 static void find_bends(iso_channels *c) {
