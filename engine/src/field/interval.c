@@ -11,13 +11,13 @@ static double product(double a, double b) {
 }
 
 /* Products may become subnormal, where an error has no relation to their size. */
-static const double least_product = 0x1p-1060;
+static const double least_product = 0x1p-900;
 
-interval interval_multiply(interval a, interval b) {
+interval interval_product(interval a, interval b) {
     if (a.low == a.high && interval_is_finite(a))
-        return a.low == 1 ? b : interval_scale(a.low, b);
+        return interval_scale(a.low, b);
     if (b.low == b.high && interval_is_finite(b))
-        return b.low == 1 ? a : interval_scale(b.low, a);
+        return interval_scale(b.low, a);
     double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, t = a.high * b.high;
     if (!interval_is_finite(a) || !interval_is_finite(b)) {
         p = product(a.low, b.low), q = product(a.low, b.high);
@@ -85,7 +85,9 @@ void interval_sine_cosine(interval *sine, interval *cosine, interval a) {
     }
     double s, t, c, d, turn = 2 * pi;
     series_sine_cosine(&s, &c, a.low);
-    series_sine_cosine(&t, &d, a.high);
+    t = s, d = c;
+    if (a.high > a.low)
+        series_sine_cosine(&t, &d, a.high);
     *sine = wave_between(s, t, meets(a, 0.5 * pi, turn), meets(a, -0.5 * pi, turn));
     *cosine = wave_between(c, d, meets(a, 0, turn), meets(a, pi, turn));
 }

@@ -66,7 +66,7 @@ static inline interval interval_subtract(interval a, interval b) {
 /* By a finite number. Products may become subnormal, where an error has no relation to their size:
  * so a little more than rounding. */
 static inline interval interval_scale(double by, interval a) {
-    const double least_product = 0x1p-1060;
+    const double least_product = 0x1p-900;
     if (by == 0)
         return (interval){0, 0};
     interval c = by > 0 ? (interval){by * a.low, by * a.high} : (interval){by * a.high, by * a.low};
@@ -84,7 +84,11 @@ static inline interval interval_abs(interval a) {
                          : (interval){0, most_of(-a.low, a.high)};
 }
 
-interval interval_multiply(interval a, interval b);
+interval interval_product(interval a, interval b);
+/* By one, as slopes often are, without a call. */
+static inline interval interval_multiply(interval a, interval b) {
+    return interval_is(a, 1) ? b : interval_is(b, 1) ? a : interval_product(a, b);
+}
 interval interval_divide(interval a, interval b);
 interval interval_square(interval a);
 interval interval_sqrt(interval a); /* all there is, if some of it has no root */

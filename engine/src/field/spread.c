@@ -105,17 +105,21 @@ static interval whole_power(interval a, double n) {
     if (fmod(n, 2) == 0)
         a = interval_abs(a);
     interval c = interval_outward(series_power(a.low, n), series_power(a.high, n), series_error);
-    c.low -= c.low < 0 ? 0x1p-1060 : 0;
-    c.high += c.high >= 0 && a.high > 0 ? 0x1p-1060 : 0;
+    c.low -= c.low < 0 ? 0x1p-900 : 0;
+    c.high += c.high >= 0 && a.high > 0 ? 0x1p-900 : 0;
     return c;
 }
 
 /* Of a base above zero, monotone in either operand. */
 static interval general_power(interval a, interval b) {
-    double p = series_power(a.low, b.low), q = series_power(a.low, b.high),
-           r = series_power(a.high, b.low), s = series_power(a.high, b.high);
+    double p = series_power(a.low, b.low), r = a.high > a.low ? series_power(a.high, b.low) : p;
+    double q = p, s = r;
+    if (b.high > b.low) {
+        q = series_power(a.low, b.high);
+        s = series_power(a.high, b.high);
+    }
     return interval_outward(least_of(least_of(p, q), least_of(r, s)),
-                            most_of(most_of(p, q), most_of(r, s)) + 0x1p-1060, series_error);
+                            most_of(most_of(p, q), most_of(r, s)) + 0x1p-900, series_error);
 }
 
 static interval positive_log(interval a) {
@@ -441,7 +445,7 @@ void spread_exp(spread *to, const spread *const *from, int32_t slopes) {
         nothing_known(to, from, 1, slopes);
         return;
     }
-    to->value = interval_outward(series_exp(a.low), series_exp(a.high) + 0x1p-1060, series_error);
+    to->value = interval_outward(series_exp(a.low), series_exp(a.high) + 0x1p-900, series_error);
     if (to->value.low < 0)
         to->value.low = 0;
     interval by = to->value;
