@@ -110,8 +110,10 @@ static double larger(double a, double b) {
 /* In how many pieces the axes go from a to b, so that the tip stays on its way. How far it strays
  * falls with the square of their number. */
 static int32_t pieces(const iso_head *head, const stand *a, const stand *b) {
+    if (!head->machine)
+        return 1;
     double swing = larger(degrees_between(a, b, 0), degrees_between(a, b, 1));
-    if (!head->machine || swing == 0)
+    if (swing == 0)
         return 1;
     iso_vec3 normal, middle;
     iso_pose pose = pose_between(head, a, b, 0.5);
@@ -193,8 +195,10 @@ static double acceleration_limit(const iso_head *head, const stand *a, const sta
 /* The estimate follows the tip over the part. Where only the part turns about it, the time counts
  * alone. */
 static void plan(iso_head *head, const stand *from, const stand *to, const stroke *s, double time) {
-    iso_vec3 normal, by;
-    by = vec3_minus(tip_of(&normal, head, to), tip_of(&normal, head, from));
+    iso_vec3 normal,
+        by = {(to->x - from->x) / 1000.0, (to->y - from->y) / 1000.0, (to->z - from->z) / 1000.0};
+    if (head->machine)
+        by = vec3_minus(tip_of(&normal, head, to), tip_of(&normal, head, from));
     double mm = vec3_length(by), delta[3] = {by.x, by.y, by.z}, still[3] = {0, 0, 0};
     *(s->width > 0 ? &head->bead_mm : &head->travel_mm) += mm;
     if (!head->machine)
