@@ -69,7 +69,7 @@ static iso_vec3 skin(const clearance_move *bead, double t, iso_vec3 out) {
 /* The most that points of a bead are inside the tool along a move. */
 static double deepest(const clearance_tool *tool, const clearance_move *move, const way_run *run,
                       const clearance_move *bead) {
-    enum { ALONG = 16, OUT = 120, POINTS = (ALONG + 1) * OUT };
+    enum { ALONG = 12, OUT = 120, POINTS = (ALONG + 1) * OUT };
     iso_vec3 point[POINTS];
     for (int i = 0; i < POINTS; i++) {
         double z = 1 - (i % OUT * 2 + 1) / (double)OUT, turn = i % OUT * 2.39996322972865;
@@ -186,7 +186,7 @@ static void check_scene(const clearance_tool *tool, int *hits, int *free) {
 static void test_points(clearance_turning turning) {
     uint64_t state = 10 + turning;
     int hits = 0, free = 0;
-    for (int i = 0; i < 36; i++) {
+    for (int i = 0; i < 44; i++) {
         clearance_tool tool = small_tool(&state, turning);
         random_scene(&state, 4 + (int)(random_next(&state) % 6), turning ? 0.5 : 0.3);
         check_scene(&tool, &hits, &free);
@@ -218,7 +218,8 @@ static bool decide(clearance_hit *hit, const clearance_tool *model) {
     bool found = false;
     CHECK_OK(tool_init(&tool, model));
     for (int i = 0; i < plan.count; i++) {
-        move[i] = (exact_move){plan.move[i], run_at(i), i};
+        move[i] = (exact_move){
+            plan.move[i], run_at(i), i, {TOOL_ALL, {-INFINITY, -INFINITY}, {INFINITY, INFINITY}}};
         if (is_bead(&plan.move[i]))
             CHECK_OK(beads_add(&beads, &plan.move[i], i));
     }

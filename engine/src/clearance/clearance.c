@@ -11,6 +11,8 @@
 #define CLUSTER_EXTENT 4.0
 enum { WAITING = 512, DOUBTFUL = 1024 };
 
+static const ground_doubt everything = {TOOL_ALL, {-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
+
 struct clearance {
     tool_body tool;
     ground_map *ground; /* NULL: the tool turns */
@@ -76,32 +78,41 @@ static iso_status decide(clearance *check) {
     return ISO_OK;
 }
 
-static iso_status doubt(clearance *check, const exact_move *move) {
-    if (check->doubtful > 0 && check->exact[check->doubtful - 1].index == move->index)
+/* Of a move that waits; its steps come one after the other. */
+static iso_status doubt(clearance *check, const exact_move *move, const ground_doubt *doubt) {
+    exact_move *last = check->doubtful > 0 ? &check->exact[check->doubtful - 1] : NULL;
+    if (last && last->index == move->index) {
+        last->doubt.parts |= doubt->parts;
+        last->doubt.low.x = least_of(last->doubt.low.x, doubt->low.x);
+        last->doubt.low.y = least_of(last->doubt.low.y, doubt->low.y);
+        last->doubt.high.x = most_of(last->doubt.high.x, doubt->high.x);
+        last->doubt.high.y = most_of(last->doubt.high.y, doubt->high.y);
         return ISO_OK;
+    }
     ISO_TRY(ISO_GROW(check->exact, check->doubtful_capacity, check->doubtful + 1));
-    check->exact[check->doubtful++] = *move;
+    check->exact[check->doubtful] = *move;
+    check->exact[check->doubtful++].doubt = *doubt;
     check->doubtful_total++;
     return ISO_OK;
 }
 
 /* Ask the ground about the steps that came together. */
 static iso_status ask_ground(clearance *check) {
-    uint64_t doubtful;
-    ground_check(&doubtful, check->ground, check->step, check->step_count);
+    ground_doubt doubts[GROUND_STEPS];
+    ground_check(doubts, check->ground, check->step, check->step_count);
     for (int i = 0; i < check->step_count; i++)
-        if (doubtful >> i & 1)
-            ISO_TRY(doubt(check, &check->move[check->step[i].move]));
+        if (doubts[i].parts)
+            ISO_TRY(doubt(check, &check->move[check->step[i].move], &doubts[i]));
     check->step_count = 0;
     return ISO_OK;
 }
 
 static iso_status enter_step(clearance *check, const ground_step *step) {
-    iso_vec2 low = {fmin(step->from.x, step->to.x), fmin(step->from.y, step->to.y)};
-    iso_vec2 high = {fmax(step->from.x, step->to.x), fmax(step->from.y, step->to.y)};
+    iso_vec2 low = {least_of(step->from.x, step->to.x), least_of(step->from.y, step->to.y)};
+    iso_vec2 high = {most_of(step->from.x, step->to.x), most_of(step->from.y, step->to.y)};
     if (check->step_count > 0) {
-        iso_vec2 all_low = {fmin(low.x, check->low.x), fmin(low.y, check->low.y)};
-        iso_vec2 all_high = {fmax(high.x, check->high.x), fmax(high.y, check->high.y)};
+        iso_vec2 all_low = {least_of(low.x, check->low.x), least_of(low.y, check->low.y)};
+        iso_vec2 all_high = {most_of(high.x, check->high.x), most_of(high.y, check->high.y)};
         if (check->step_count == GROUND_STEPS || all_high.x - all_low.x > CLUSTER_EXTENT ||
             all_high.y - all_low.y > CLUSTER_EXTENT) {
             ISO_TRY(ask_ground(check));
@@ -124,7 +135,7 @@ static iso_status enter_move(clearance *check, int32_t at) {
             ISO_TRY(ground_add(check->ground, move));
     }
     if (!check->ground)
-        return doubt(check, &check->move[at]);
+        return doubt(check, &check->move[at], &everything);
     way_section section[WAY_SECTIONS];
     int sections =
         way_sections(section, move, &check->move[at].run, check->tool.model.tip_diameter);
@@ -163,8 +174,10 @@ static iso_vec3 unit_or_up(iso_vec3 normal) {
 
 iso_status clearance_add(clearance *check, const clearance_move *move) {
     ISO_TRY(ISO_GROW(check->move, check->waiting_capacity, check->waiting + 1));
-    check->move[check->waiting++] = (exact_move){
-        *move, {.begin = check->printed, .begin_height = check->printed_height}, check->count++};
+    check->move[check->waiting++] =
+        (exact_move){.move = *move,
+                     .run = {.begin = check->printed, .begin_height = check->printed_height},
+                     .index = check->count++};
     clearance_move *added = &check->move[check->waiting - 1].move;
     added->from_normal = unit_or_up(move->from_normal);
     added->to_normal = unit_or_up(move->to_normal);

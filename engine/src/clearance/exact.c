@@ -34,10 +34,10 @@ static double reach_of(const bead_store *beads, const clearance_move *move) {
         const double at[3] = {tip.x, tip.y, tip.z};
         double sum = 0;
         for (int k = 0; k < 3; k++) {
-            double far = fmax(fabs(beads->low[k] - at[k]), fabs(beads->high[k] - at[k]));
+            double far = most_of(fabs(beads->low[k] - at[k]), fabs(beads->high[k] - at[k]));
             sum += far * far;
         }
-        most = fmax(most, sqrt(sum));
+        most = most_of(most, sqrt(sum));
     }
     return most + 1;
 }
@@ -47,7 +47,8 @@ static double reach_of(const bead_store *beads, const clearance_move *move) {
 static double reach_to(const exact_piece *piece, const clearance_move *bead) {
     double far = 0;
     for (int i = 0; i < 4; i++)
-        far = fmax(far, vec3_distance(piece->sweep.pose[i / 2].tip, i % 2 ? bead->to : bead->from));
+        far = most_of(far,
+                      vec3_distance(piece->sweep.pose[i / 2].tip, i % 2 ? bead->to : bead->from));
     return far + bead->width + bead->height + 1;
 }
 
@@ -58,14 +59,22 @@ static double turns_of(const exact_search *search, const clearance_move *move) {
     return vec3_distance(vec3_unit(move->from_normal), vec3_unit(move->to_normal)) / TURN;
 }
 
-static void box_of(float box[6], const touch_sweep *sweep) {
+/* A question: the box of a sweep, as far as there is doubt. */
+static void ask(exact_search *search, const touch_sweep *sweep, int32_t piece) {
+    const ground_doubt *doubt = &search->move[search->piece[piece].move].doubt;
+    double low[3] = {doubt->low.x, doubt->low.y, -INFINITY};
+    double high[3] = {doubt->high.x, doubt->high.y, INFINITY};
+    float *box = search->box + 6 * search->query_count;
     for (int k = 0; k < 3; k++) {
-        iso_vec3 way = vec3(k == 0, k == 1, k == 2);
-        double least =
-            -vec3_dot(touch_sweep_support(sweep, vec3_times(way, -1)), vec3_times(way, -1));
-        box[k] = (float)least - 0.002f; /* more than all rounding */
-        box[3 + k] = (float)vec3_dot(touch_sweep_support(sweep, way), way) + 0.002f;
+        iso_vec3 way = vec3(k == 0, k == 1, k == 2), back = vec3_times(way, -1);
+        low[k] = most_of(low[k], vec3_dot(touch_sweep_support(sweep, back), way));
+        high[k] = least_of(high[k], vec3_dot(touch_sweep_support(sweep, way), way));
+        if (low[k] > high[k])
+            return;
+        box[k] = (float)low[k] - 0.002f; /* more than all rounding */
+        box[3 + k] = (float)high[k] + 0.002f;
     }
+    search->of[search->query_count++] = piece;
 }
 
 /* A cone in slabs, each twice as high as the one below, whose boxes hold less than one. */
@@ -80,8 +89,7 @@ static void enter_slabs(exact_search *search, const touch_sweep *sweep, int32_t 
         slab.shape.high = whole->low + to;
         slab.shape.radius_low = whole->radius_low + slope * from;
         slab.shape.radius_high = whole->radius_low + slope * to;
-        search->of[search->query_count] = piece;
-        box_of(search->box + 6 * search->query_count++, &slab);
+        ask(search, &slab, piece);
     }
 }
 
@@ -107,16 +115,15 @@ static iso_status enter_piece(exact_search *search, int32_t move, const tool_pos
         *piece = (struct exact_piece){.raise = raise, .part = (tool_part)part, .move = move};
         piece->sweep.pose[0] = pose[0];
         piece->sweep.pose[1] = pose[1];
-        if (!tool_shape_of(&piece->sweep.shape, search->tool, piece->part,
+        if (!(search->move[move].doubt.parts >> part & 1) ||
+            !tool_shape_of(&piece->sweep.shape, search->tool, piece->part,
                            (double[]){raise, CLEARANCE_TOLERANCE}, reach))
             continue;
         int32_t index = (int32_t)search->piece_count++;
-        if (part == TOOL_NOZZLE) {
+        if (part == TOOL_NOZZLE)
             enter_slabs(search, &piece->sweep, index);
-        } else {
-            search->of[search->query_count] = index;
-            box_of(search->box + 6 * search->query_count++, &piece->sweep);
-        }
+        else
+            ask(search, &piece->sweep, index);
     }
     return ISO_OK;
 }
@@ -173,7 +180,7 @@ static iso_vec3 tip_near(const clearance_move *move, iso_vec3 place) {
     iso_vec3 way = vec3_minus(move->to, move->from);
     double length = vec3_dot(way, way);
     double t = length > 0 ? vec3_dot(vec3_minus(place, move->from), way) / length : 0;
-    return vec3_between(move->from, move->to, fmin(1, fmax(0, t)));
+    return vec3_between(move->from, move->to, least_of(1, most_of(0, t)));
 }
 
 static void look_at(clearance_hit *hit, bool *found, const exact_search *search,
@@ -209,6 +216,8 @@ static iso_status check_batch(clearance_hit *hit, bool *found, exact_search *sea
     search->piece_count = search->query_count = 0;
     for (int32_t i = 0; i < count; i++)
         ISO_TRY(enter_move(search, i));
+    if (search->query_count == 0)
+        return ISO_OK;
     const beads_pair *pair;
     int64_t pairs;
     ISO_TRY(beads_find(&pair, &pairs, search->beads, search->box, (int32_t)search->query_count));

@@ -3,6 +3,7 @@
 #define ISO_CLEARANCE_EXACT_H
 
 #include "clearance/beads.h"
+#include "clearance/ground.h"
 #include "clearance/tool.h"
 #include "clearance/way.h"
 
@@ -10,6 +11,7 @@ typedef struct exact_move {
     clearance_move move;
     way_run run;
     int64_t index;
+    ground_doubt doubt; /* only there, and only these parts, may touch something */
 } exact_move;
 
 /* The first of the moves that hits a bead before it, and there the bead that is hit deepest. */

@@ -8,7 +8,7 @@
  * touches few. */
 #define CELL 0.8   /* mm */
 #define ROUND 1e-3 /* mm, more than what single precision is off */
-#define SLOPE_STEPS 64.0
+#define SLOPE_STEPS 256.0
 #define SLOPE_MOST 8.0 /* steeper planes are worth nothing */
 
 /* A tile has 32 x 32 cells, the directory 128 x 128 tiles: all that ISO_COORDINATE_MAX allows. */
@@ -42,23 +42,10 @@ struct ground_map {
     box_part part[3]; /* block, carriage, gantry */
     ground_tile *tiles[TILES * TILES];
     float top[TILES * TILES * 4 / 3 + 1]; /* levels TILE_LEVEL to TOP_LEVEL */
+    int32_t first[TOP_LEVEL + 1];         /* of each level, in its array; level 0 has none */
     int64_t tile_count;
     int32_t low[2], high[2]; /* tiles there are; low > high: none */
 };
-
-static int32_t top_first(int level) { /* of levels in ground.top */
-    int32_t first = 0;
-    for (int k = TILE_LEVEL; k < level; k++)
-        first += (SIZE >> k) * (SIZE >> k);
-    return first;
-}
-
-static int32_t tile_first(int level) {
-    int32_t first = 0;
-    for (int k = 1; k < level; k++)
-        first += (TILE >> k) * (TILE >> k);
-    return first;
-}
 
 static box_part part_of(const tool_body *tool, tool_part part) {
     tool_shape shape;
@@ -87,6 +74,12 @@ iso_status ground_new(ground_map **made, const tool_body *tool) {
         ground->part[i] = part_of(tool, (tool_part)(TOOL_BLOCK + i));
     for (size_t i = 0; i < sizeof ground->top / sizeof *ground->top; i++)
         ground->top[i] = NOWHERE;
+    for (int k = 1, first = 0; k <= TOP_LEVEL; k++) {
+        if (k == TILE_LEVEL)
+            first = 0;
+        ground->first[k] = first;
+        first += k < TILE_LEVEL ? (TILE >> k) * (TILE >> k) : (SIZE >> k) * (SIZE >> k);
+    }
     ground->low[0] = ground->low[1] = TILES;
     ground->high[0] = ground->high[1] = -1;
     *made = ground;
@@ -164,8 +157,8 @@ static double above_plane(const ground_print *print, double gx, double gy) {
     for (int end = 0; end < 2; end++) {
         double along = vec3_dot(up, print->normal[end]);
         double above =
-            print->disc * sqrt(fmax(0, size - along * along)) + print->ball * (length - along);
-        most = fmax(most, above);
+            print->disc * sqrt(most_of(0, size - along * along)) + print->ball * (length - along);
+        most = most_of(most, above);
     }
     return most;
 }
@@ -176,7 +169,7 @@ static int16_t slope_of(double slope) {
 }
 
 static ground_print print_of(const clearance_move *bead) {
-    double across = fmin(bead->width, bead->height);
+    double across = least_of(bead->width, bead->height);
     ground_print print = {.from = bead->from,
                           .way = vec3_minus(bead->to, bead->from),
                           .normal = {bead->from_normal, bead->to_normal},
@@ -193,7 +186,7 @@ static ground_print print_of(const clearance_move *bead) {
     print.above = above_plane(&print, 0, 0);
     print.above_plane = above_plane(&print, print.gx, print.gy);
     /* Seen from above a bead on a slope is shifted, by its ball's radius at most. */
-    double steep = fmin(fabs(print.normal[0].z), fabs(print.normal[1].z));
+    double steep = least_of(fabs(print.normal[0].z), fabs(print.normal[1].z));
     print.around = print.disc + print.ball + (steep < 1 ? print.ball : 0);
     return print;
 }
@@ -207,9 +200,9 @@ static void enter(ground_cell *cell, const ground_print *print, const double t[2
         x[i] = print->from.x + t[i] * print->way.x - middle[0];
         y[i] = print->from.y + t[i] * print->way.y - middle[1];
     }
-    double top = fmax(z[0], z[1]) + print->above + ROUND;
-    double plane = fmax(z[0] - print->gx * x[0] - print->gy * y[0],
-                        z[1] - print->gx * x[1] - print->gy * y[1]) +
+    double top = most_of(z[0], z[1]) + print->above + ROUND;
+    double plane = most_of(z[0] - print->gx * x[0] - print->gy * y[0],
+                           z[1] - print->gx * x[1] - print->gy * y[1]) +
                    print->above_plane + ROUND;
     if (cell->top == NOWHERE) {
         *cell = (struct ground_cell){(float)top, (float)plane, {print->slope[0], print->slope[1]}};
@@ -224,10 +217,10 @@ static void enter(ground_cell *cell, const ground_print *print, const double t[2
     double gx = cell->slope[0] / SLOPE_STEPS, gy = cell->slope[1] / SLOPE_STEPS;
     double turned =
         cell->plane + (fabs(gx - print->gx) + fabs(gy - print->gy)) * (CELL / 2) + ROUND;
-    double kept = fmax(z[0] - gx * x[0] - gy * y[0], z[1] - gx * x[1] - gy * y[1]) +
+    double kept = most_of(z[0] - gx * x[0] - gy * y[0], z[1] - gx * x[1] - gy * y[1]) +
                   above_plane(print, gx, gy) + ROUND;
-    turned = fmax(turned, plane);
-    kept = fmax(kept, cell->plane);
+    turned = most_of(turned, plane);
+    kept = most_of(kept, cell->plane);
     if (kept <= turned) {
         cell->plane = (float)kept;
     } else {
@@ -242,8 +235,8 @@ static bool clip(double t[2], double from, double way, double low, double high) 
     if (way == 0)
         return from >= low && from <= high;
     double a = (low - from) / way, b = (high - from) / way;
-    t[0] = fmax(t[0], fmin(a, b));
-    t[1] = fmin(t[1], fmax(a, b));
+    t[0] = most_of(t[0], least_of(a, b));
+    t[1] = least_of(t[1], most_of(a, b));
     return t[0] <= t[1];
 }
 
@@ -255,9 +248,9 @@ static int32_t cell_at(double mm) {
 static iso_status enter_row(ground_map *ground, const ground_print *print, int32_t y,
                             const double row[2]) {
     double x[2] = {print->from.x + row[0] * print->way.x, print->from.x + row[1] * print->way.x};
-    int32_t last = cell_at(fmax(x[0], x[1]) + print->around);
+    int32_t last = cell_at(most_of(x[0], x[1]) + print->around);
     ground_tile *tile = NULL;
-    for (int32_t i = cell_at(fmin(x[0], x[1]) - print->around), in = -1; i <= last; i++) {
+    for (int32_t i = cell_at(least_of(x[0], x[1]) - print->around), in = -1; i <= last; i++) {
         double t[2] = {row[0], row[1]}, left = ORIGIN + CELL * i;
         if (!clip(t, print->from.x, print->way.x, left - print->around,
                   left + CELL + print->around))
@@ -275,8 +268,8 @@ static iso_status enter_row(ground_map *ground, const ground_print *print, int32
 
 iso_status ground_add(ground_map *ground, const clearance_move *bead) {
     ground_print print = print_of(bead);
-    int32_t last = cell_at(fmax(bead->from.y, bead->to.y) + print.around);
-    for (int32_t y = cell_at(fmin(bead->from.y, bead->to.y) - print.around); y <= last; y++) {
+    int32_t last = cell_at(most_of(bead->from.y, bead->to.y) + print.around);
+    for (int32_t y = cell_at(least_of(bead->from.y, bead->to.y) - print.around); y <= last; y++) {
         double t[2] = {0, 1}, low = ORIGIN + CELL * y;
         if (clip(t, print.from.y, print.way.y, low - print.around, low + CELL + print.around))
             ISO_TRY(enter_row(ground, &print, y, t));
@@ -296,24 +289,25 @@ static double cone_height(const ground_map *ground, double square, double raise)
     if (square > ground->cone_radius * ground->cone_radius)
         return INFINITY;
     double distance = sqrt(square);
-    return raise + fmax(ground->shrink, (distance - ground->radius) * ground->inverse);
+    return raise + most_of(ground->shrink, (distance - ground->radius) * ground->inverse);
 }
 
 static double beyond(double low, double high, double from, double to) {
-    return fmax(0, fmax(from - high, low - to));
+    return most_of(0, most_of(from - high, low - to));
 }
 
-/* Is all of the square lower than the tool's box parts? */
-static bool under_boxes(const ground_map *ground, const ground_reach *reach, const double square[4],
-                        double top) {
+/* Parts, but for the nozzle, that something as high as `top` in the square may reach. */
+static int boxes_over(const ground_map *ground, const ground_reach *reach, const double square[4],
+                      double top) {
+    int parts = 0;
     for (int i = 0; i < 3; i++) {
         const box_part *part = &ground->part[i];
         if (top > reach->z + part->height && square[0] < reach->high[0] + part->high.x &&
             square[2] > reach->low[0] + part->low.x && square[1] < reach->high[1] + part->high.y &&
             square[3] > reach->low[1] + part->low.y)
-            return false;
+            parts |= 1 << (TOOL_BLOCK + i);
     }
-    return true;
+    return parts;
 }
 
 static bool under_nozzle(const ground_map *ground, const ground_reach *reach,
@@ -331,8 +325,8 @@ static bool above_cell(const ground_map *ground, const ground_step *step, const 
     double gx = cell->slope[0] / SLOPE_STEPS, gy = cell->slope[1] / SLOPE_STEPS;
     double steep = sqrt(gx * gx + gy * gy);
     double radius = ground->radius + ground->shrink * ground->tool->tangent;
-    double least = fmin(step->raise + ground->shrink - steep * fmax(0, radius),
-                        ground->cone_height - steep * ground->cone_radius);
+    double least = least_of(step->raise + ground->shrink - steep * most_of(0, radius),
+                            ground->cone_height - steep * ground->cone_radius);
     for (int end = 0; end < 2; end++) {
         iso_vec3 tip = end ? step->to : step->from;
         if (cell->plane + gx * (tip.x - middle[0]) + gy * (tip.y - middle[1]) > tip.z + least)
@@ -348,11 +342,11 @@ static ground_reach reach_of(const ground_step *step, int count) {
             iso_vec3 tip = end ? step[i].to : step[i].from;
             const double at[2] = {tip.x, tip.y};
             for (int k = 0; k < 2; k++) {
-                reach.low[k] = fmin(reach.low[k], at[k]);
-                reach.high[k] = fmax(reach.high[k], at[k]);
+                reach.low[k] = least_of(reach.low[k], at[k]);
+                reach.high[k] = most_of(reach.high[k], at[k]);
             }
-            reach.z = fmin(reach.z, tip.z);
-            reach.raise = fmin(reach.raise, step[i].raise);
+            reach.z = least_of(reach.z, tip.z);
+            reach.raise = least_of(reach.raise, step[i].raise);
         }
     return reach;
 }
@@ -363,7 +357,7 @@ typedef struct ground_question {
     int count;
     ground_reach all;
     ground_reach one[GROUND_STEPS];
-    uint64_t doubtful;
+    ground_doubt *doubt;
 } ground_question;
 
 static void ask_cell(ground_question *question, const ground_cell *cell, const double square[4]) {
@@ -371,59 +365,64 @@ static void ask_cell(ground_question *question, const ground_cell *cell, const d
     const double middle[2] = {square[0] + CELL / 2, square[1] + CELL / 2};
     for (int i = 0; i < question->count; i++) {
         const ground_reach *reach = &question->one[i];
-        if (question->doubtful >> i & 1)
+        int parts = boxes_over(ground, reach, square, cell->top);
+        if (!under_nozzle(ground, reach, square, cell->top) &&
+            !above_cell(ground, &question->step[i], cell, middle))
+            parts |= 1 << TOOL_NOZZLE;
+        if (!parts)
             continue;
-        if (!under_boxes(ground, reach, square, cell->top) ||
-            (!under_nozzle(ground, reach, square, cell->top) &&
-             !above_cell(ground, &question->step[i], cell, middle)))
-            question->doubtful |= (uint64_t)1 << i;
+        ground_doubt *doubt = &question->doubt[i];
+        doubt->parts |= parts;
+        doubt->low.x = least_of(doubt->low.x, square[0]);
+        doubt->low.y = least_of(doubt->low.y, square[1]);
+        doubt->high.x = most_of(doubt->high.x, square[2]);
+        doubt->high.y = most_of(doubt->high.y, square[3]);
     }
 }
 
-static void ask(ground_question *question, int level, int32_t x, int32_t y) {
+/* A square of level `level` and all that is in it. */
+static void ask(ground_question *question, int level, int32_t x, int32_t y,
+                const ground_tile *tile) {
     ground_map *ground = question->ground;
-    const ground_tile *tile = NULL;
     const ground_cell *cell = NULL;
     float top;
     if (level >= TILE_LEVEL) {
-        top = ground->top[top_first(level) + y * (SIZE >> level) + x];
+        top = ground->top[ground->first[level] + y * (SIZE >> level) + x];
     } else {
-        int32_t mask = (TILE >> level) - 1;
-        tile = ground->tiles[(y >> (TILE_LEVEL - level)) * TILES + (x >> (TILE_LEVEL - level))];
-        cell = tile->cell + (y & mask) * TILE + (x & mask);
-        top = level ? tile->top[tile_first(level) + (y & mask) * (TILE >> level) + (x & mask)]
-                    : cell->top;
+        int32_t mask = (TILE >> level) - 1, at = (y & mask) * (TILE >> level) + (x & mask);
+        cell = tile->cell + at;
+        top = level ? tile->top[ground->first[level] + at] : cell->top;
     }
     if (top == NOWHERE)
         return;
     double size = CELL * (1 << level), left = ORIGIN + size * x, lower = ORIGIN + size * y;
     const double square[4] = {left, lower, left + size, lower + size};
-    if (under_boxes(ground, &question->all, square, top) &&
-        under_nozzle(ground, &question->all, square, top))
+    if (under_nozzle(ground, &question->all, square, top) &&
+        !boxes_over(ground, &question->all, square, top))
         return;
     if (level == 0) {
         ask_cell(question, cell, square);
         return;
     }
+    if (level == TILE_LEVEL)
+        tile = ground->tiles[y * TILES + x];
     for (int i = 0; i < 4; i++)
-        ask(question, level - 1, 2 * x + i % 2, 2 * y + i / 2);
+        ask(question, level - 1, 2 * x + i % 2, 2 * y + i / 2, tile);
 }
 
-void ground_check(uint64_t *doubtful, ground_map *ground, const ground_step *step, int count) {
-    ground_question question = {.ground = ground, .step = step, .count = count};
+void ground_check(ground_doubt *doubt, ground_map *ground, const ground_step *step, int count) {
+    ground_question question = {.ground = ground, .step = step, .count = count, .doubt = doubt};
     question.all = reach_of(step, count);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i++) {
         question.one[i] = reach_of(step + i, 1);
+        doubt[i] = (ground_doubt){0, {INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    }
     /* From the level where all there is lies in 2 x 2 squares. */
-    int level = TILE_LEVEL;
-    while (
-        level < TOP_LEVEL &&
-        ((ground->high[0] >> (level - TILE_LEVEL)) - (ground->low[0] >> (level - TILE_LEVEL)) > 1 ||
-         (ground->high[1] >> (level - TILE_LEVEL)) - (ground->low[1] >> (level - TILE_LEVEL)) > 1))
-        level++;
-    int shift = level - TILE_LEVEL;
-    for (int32_t y = ground->low[1] >> shift; y <= ground->high[1] >> shift; y++)
-        for (int32_t x = ground->low[0] >> shift; x <= ground->high[0] >> shift; x++)
-            ask(&question, level, x, y);
-    *doubtful = question.doubtful;
+    int shift = 0;
+    const int32_t *low = ground->low, *high = ground->high;
+    while ((high[0] >> shift) - (low[0] >> shift) > 1 || (high[1] >> shift) - (low[1] >> shift) > 1)
+        shift++;
+    for (int32_t y = low[1] >> shift; y <= high[1] >> shift; y++)
+        for (int32_t x = low[0] >> shift; x <= high[0] >> shift; x++)
+            ask(&question, TILE_LEVEL + shift, x, y, NULL);
 }

@@ -26,9 +26,15 @@ typedef struct ground_step {
 
 enum { GROUND_STEPS = 64 };
 
-/* Which of the steps, no more than GROUND_STEPS, are not proven free: bit i of *doubtful. They
- * should be close together. */
-void ground_check(uint64_t *doubtful, ground_map *ground, const ground_step *step, int count);
+/* What is left to be decided: parts of the tool, 1 << tool_part each, over a box of x and y. */
+typedef struct ground_doubt {
+    int parts; /* 0: the step is free */
+    iso_vec2 low, high;
+} ground_doubt;
+
+/* Which of the steps, no more than GROUND_STEPS, are not proven free. They should be close
+ * together. */
+void ground_check(ground_doubt *doubt, ground_map *ground, const ground_step *step, int count);
 
 int64_t ground_bytes(const ground_map *ground);
 

@@ -42,7 +42,7 @@ static bool nozzle(tool_shape *shape, const tool_body *tool, double raise, doubl
     *shape = (tool_shape){.low = low,
                           .high = high,
                           .round = true,
-                          .radius_low = fmax(0, radius + (low - raise) * tool->tangent),
+                          .radius_low = most_of(0, radius + (low - raise) * tool->tangent),
                           .radius_high = radius + (high - raise) * tool->tangent};
     return low < high;
 }
@@ -61,7 +61,8 @@ static bool boxed(tool_shape *shape, const tool_body *tool, const iso_vec2 box[2
     if (!column(shape, low + shrink, high, shrunk))
         return false;
     if (tool->model.turning == CLEARANCE_ABOUT_ALL) {
-        double x = fmax(fabs(box[0].x), fabs(box[1].x)), y = fmax(fabs(box[0].y), fabs(box[1].y));
+        double x = most_of(fabs(box[0].x), fabs(box[1].x)),
+               y = most_of(fabs(box[0].y), fabs(box[1].y));
         shape->round = true;
         shape->radius_low = shape->radius_high = sqrt(x * x + y * y) - shrink;
     }

@@ -15,6 +15,16 @@ typedef enum tool_part {
 
 const char *tool_part_name(tool_part part);
 
+enum { TOOL_ALL = (1 << TOOL_PARTS) - 1 };
+
+/* C's own are calls of a library here, for what they do with NaN. */
+static inline double least_of(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double most_of(double a, double b) {
+    return a > b ? a : b;
+}
+
 typedef struct tool_body {
     clearance_tool model;
     double tangent, secant; /* of the cone's angle */

@@ -2,7 +2,7 @@
 
 touch_bead touch_bead_of(const clearance_move *move) {
     /* What is narrower than high hangs in the air: its upper end is what counts. */
-    double across = fmin(move->width, move->height);
+    double across = least_of(move->width, move->height);
     touch_bead bead = {.normal = {move->from_normal, move->to_normal},
                        .disc = (move->width - across) / 2,
                        .ball = across / 2};
@@ -158,12 +158,13 @@ static void reduce(simplex *s) {
     }
 }
 
-/* The distance of the sweep to the bead without its ball, to 0.1 um; or any number that is on the
- * same side of `enough` as it. *s says where, unless it is 0. */
-static double distance_of(simplex *s, const touch_sweep *sweep, const touch_bead *bead,
-                          double enough) {
+/* The distance of the sweep to the bead without its ball, to 0.1 um; or any number that is, as it
+ * is, no more than `near`, or more than `far`. *s says where, if it isn't more than that. */
+static double distance_of(simplex *s, const touch_sweep *sweep, const touch_bead *bead, double near,
+                          double far) {
     enum { ROUNDS = 100 };
-    iso_vec3 way = vec3_minus(sweep->pose[0].tip, bead->center[0]);
+    /* Most are apart across the layer: any direction will do to begin with. */
+    iso_vec3 way = vec3_plus(bead->normal[0], bead->normal[1]);
     double distance = INFINITY, least = 0;
     s->count = 0;
     for (int round = 0; round < ROUNDS; round++) {
@@ -171,9 +172,9 @@ static double distance_of(simplex *s, const touch_sweep *sweep, const touch_bead
         iso_vec3 here = touch_sweep_support(sweep, vec3_times(way, -1));
         iso_vec3 at = vec3_minus(here, there);
         double length = vec3_length(way);
-        if (length > 0 && round > 0) {
-            least = fmax(least, vec3_dot(way, at) / length);
-            if (least > enough)
+        if (length > 0) {
+            least = most_of(least, vec3_dot(way, at) / length);
+            if (least > far)
                 return least;
             if (distance - least < 1e-4)
                 return distance;
@@ -184,7 +185,7 @@ static double distance_of(simplex *s, const touch_sweep *sweep, const touch_bead
         reduce(s);
         iso_vec3 nearest = nearest_of(s);
         double now = vec3_length(nearest);
-        if (now <= enough || s->count == 4)
+        if (now <= near || s->count == 4)
             return now;
         if (now >= distance) { /* rounding: this is as near as it gets */
             *s = before;
@@ -198,16 +199,16 @@ static double distance_of(simplex *s, const touch_sweep *sweep, const touch_bead
 
 bool touch_meets(const touch_sweep *sweep, const touch_bead *bead) {
     simplex s;
-    return distance_of(&s, sweep, bead, bead->ball) <= bead->ball;
+    return distance_of(&s, sweep, bead, bead->ball, bead->ball) <= bead->ball;
 }
 
 iso_vec3 touch_place(const touch_sweep *sweep, const touch_bead *bead) {
     simplex s;
-    double distance = distance_of(&s, sweep, bead, 0);
+    double distance = distance_of(&s, sweep, bead, 0, INFINITY);
     iso_vec3 at = vec3(0, 0, 0);
     for (int i = 0; i < s.count; i++)
         at = vec3_along(at, s.weight[i], s.bead[i]);
     if (distance > 0)
-        at = vec3_along(at, fmin(1, bead->ball / distance), nearest_of(&s));
+        at = vec3_along(at, least_of(1, bead->ball / distance), nearest_of(&s));
     return at;
 }

@@ -1,5 +1,7 @@
 #include "clearance/way.h"
 
+#include "clearance/tool.h"
+
 /* Where the move is no more than `radius` from `center`: between[0] to between[1], empty if the
  * first is larger. */
 static void near_point(double between[2], const clearance_move *move, iso_vec3 center,
@@ -20,8 +22,8 @@ static void near_point(double between[2], const clearance_move *move, iso_vec3 c
     if (square < 0)
         return;
     double root = sqrt(square);
-    between[0] = fmax(0, (-b - root) / a);
-    between[1] = fmin(1, (-b + root) / a);
+    between[0] = most_of(0, (-b - root) / a);
+    between[1] = least_of(1, (-b + root) / a);
 }
 
 int way_sections(way_section section[WAY_SECTIONS], const clearance_move *move, const way_run *run,
