@@ -32,6 +32,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "arguments.h"
 #include "beads.h"
 
 enum { SLAB = 16 /* slices at a time */, MARGIN = 8 /* slices of the part known around them */ };
@@ -40,7 +41,7 @@ typedef struct request {
     const char *gcode, *stl, *field, *picture;
     double base[3], center[2], voxel, slack;
     double most_gap, most_underfill, most_layer, most_spill, volume_within;
-    int told, worst, center_given;
+    double told, worst;
     machine machine;
 } request;
 
@@ -60,45 +61,9 @@ typedef struct audit {
     char picture_file[500];
 } audit;
 
-static int numbers(double *to, const char *text, int count) {
-    for (int i = 0; i < count; i++) {
-        char *end;
-        to[i] = strtod(text, &end);
-        if (end == text || (*end != ',' && *end != 0))
-            return 0;
-        text = *end ? end + 1 : end;
-    }
-    return 1;
-}
-
-static int number_option(request *ask, const char *name, const char *value) {
-    double pivot[3];
-    const struct {
-        const char *name;
-        double *to;
-        int count;
-    } known[] = {{"--base", ask->base, 3},
-                 {"--center", ask->center, 2},
-                 {"--pivot", pivot, 3},
-                 {"--filament", &ask->machine.filament, 1},
-                 {"--voxel", &ask->voxel, 1},
-                 {"--slack", &ask->slack, 1},
-                 {"--most-gap", &ask->most_gap, 1},
-                 {"--most-underfill", &ask->most_underfill, 1},
-                 {"--most-layer", &ask->most_layer, 1},
-                 {"--most-spill", &ask->most_spill, 1},
-                 {"--volume-within", &ask->volume_within, 1}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strcmp(known[i].name, name) == 0) {
-            int good = numbers(known[i].to, value, known[i].count);
-            if (strcmp(name, "--pivot") == 0)
-                ask->machine.pivot = (vec){pivot[0], pivot[1], pivot[2]};
-            return good;
-        }
-    return 0;
-}
-
 static int read_request(request *ask, int count, char **word) {
+    double pivot[3] = {0, 0, 0};
+    const char *kinematics = "cartesian";
     *ask = (request){.center = {100, 100},
                      .voxel = 0.05,
                      .slack = 0.02,
@@ -106,36 +71,29 @@ static int read_request(request *ask, int count, char **word) {
                      .most_underfill = 1e9,
                      .most_layer = 1e9,
                      .most_spill = 1e9,
-                     .volume_within = 1e9};
-    machine_named(&ask->machine, "cartesian");
-    ask->machine.filament = 1.75;
-    for (int i = 1; i < count; i++) {
-        const char *value = i + 1 < count ? word[i + 1] : "";
-        if (word[i][0] != '-') {
-            *(ask->gcode ? &ask->stl : &ask->gcode) = word[i];
-            continue;
-        }
-        if (strcmp(word[i], "--told") == 0) {
-            ask->told = 1;
-            continue;
-        }
-        if (strcmp(word[i], "--worst") == 0) {
-            ask->worst = 1;
-            continue;
-        }
-        i++;
-        if (strcmp(word[i - 1], "--field") == 0)
-            ask->field = value;
-        else if (strcmp(word[i - 1], "--picture") == 0)
-            ask->picture = value;
-        else if (!(strcmp(word[i - 1], "--kinematics") == 0
-                       ? machine_named(&ask->machine, value)
-                       : number_option(ask, word[i - 1], value))) {
-            fprintf(stderr, "%s %s isn't understood\n", word[i - 1], value);
-            return 0;
-        }
-    }
-    return ask->gcode && ask->stl;
+                     .volume_within = 1e9,
+                     .machine = {.filament = 1.75}};
+    const argument known[] = {{"", &ask->gcode, 0, NULL},
+                              {"", &ask->stl, 0, NULL},
+                              {"--field", &ask->field, 0, NULL},
+                              {"--picture", &ask->picture, 0, NULL},
+                              {"--kinematics", &kinematics, 0, NULL},
+                              {"--told", NULL, 0, &ask->told},
+                              {"--worst", NULL, 0, &ask->worst},
+                              {"--base", NULL, 3, ask->base},
+                              {"--center", NULL, 2, ask->center},
+                              {"--pivot", NULL, 3, pivot},
+                              {"--filament", NULL, 1, &ask->machine.filament},
+                              {"--voxel", NULL, 1, &ask->voxel},
+                              {"--slack", NULL, 1, &ask->slack},
+                              {"--most-gap", NULL, 1, &ask->most_gap},
+                              {"--most-underfill", NULL, 1, &ask->most_underfill},
+                              {"--most-layer", NULL, 1, &ask->most_layer},
+                              {"--most-spill", NULL, 1, &ask->most_spill},
+                              {"--volume-within", NULL, 1, &ask->volume_within}};
+    int good = arguments_read(known, sizeof known / sizeof *known, count, word);
+    ask->machine.pivot = (vec){pivot[0], pivot[1], pivot[2]};
+    return good && machine_named(&ask->machine, kinematics) && ask->gcode && ask->stl;
 }
 
 static void lay_grid(audit *a) {
@@ -320,7 +278,7 @@ static double worst_layer(const audit *a) {
         double share = a->layer_inside[k]
                            ? 100.0 * (double)a->layer_missing[k] / (double)a->layer_inside[k]
                            : 0;
-        if (a->ask->worst)
+        if (a->ask->worst != 0)
             printf("layer %d top %.4f share %.4f missing_pct %.3f\n", k, a->beads.top[k],
                    (double)a->layer_inside[k] / (double)all, share);
         if ((double)a->layer_inside[k] > 0.002 * (double)all)
@@ -399,7 +357,7 @@ int main(int count, char **word) {
         return 2;
     if (!part_read(&a.part, ask.stl, ask.center[0], ask.center[1]) ||
         !moves_read(&a.moves, ask.gcode, &ask.machine) ||
-        !beads_make(&a.beads, &a.moves, a.field, &a.part, ask.told))
+        !beads_make(&a.beads, &a.moves, a.field, &a.part, ask.told != 0))
         return 2;
     lay_grid(&a);
     if (ask.picture && !open_picture(&a))
