@@ -102,6 +102,21 @@ static void test_counts_beads_by_role_and_width(void) {
     CHECK_EQUAL(2, occurrences("<g class=\"travel\">"));
 }
 
+/* Z in each move of a layer, axes that turn the part, inverse time. */
+static void test_moves_in_space(void) {
+    const int32_t all[] = {1, 2};
+    CHECK_OK(draw("M83\n;LAYER_CHANGE\n;Z:0.2\n;HEIGHT:0.2\nG1 X10 Y10 Z3 F600\n"
+                  ";TYPE:Perimeter\n;WIDTH:0.45\nG1 X20 Y10 Z3.5 E1\n;HEIGHT:0.25\n"
+                  "G1 X20 Y20 Z4 E1\nG1 Z9 E.1\n"
+                  ";LAYER_CHANGE\n;Z:0.4\n;HEIGHT:0.2\nG1 X10 Y10 Z1 B-4.5 C400.25\nG93\n"
+                  ";TYPE:Solid infill\n;WIDTH:0.42\nG1 C410 E1 F60\n"
+                  "G1 X10.001 A20 E1 F12.5\nG1 X15 Z1.5 B3 C-17 E1 F5\nG94\n",
+                  all, 2));
+    CHECK_EQUAL(2, beads(ISO_ROLE_PERIMETER, 45));
+    CHECK_EQUAL(2, beads(ISO_ROLE_SOLID_INFILL, 42)); /* what only turns is a point */
+    CHECK_EQUAL(2, occurrences("</tspan> of 2, z = "));
+}
+
 static void test_chooses_layers(void) {
     const int32_t last[] = {-1, 2}, none[] = {3}, zero[] = {0};
     CHECK_OK(draw(two_layers, last, 2));
@@ -188,6 +203,7 @@ static void test_survives_every_failing_allocation(void) {
 
 int main(void) {
     RUN(test_counts_beads_by_role_and_width);
+    RUN(test_moves_in_space);
     RUN(test_chooses_layers);
     RUN(test_a_layer_with_nothing_in_it);
     RUN(test_width_from_extrusion);
