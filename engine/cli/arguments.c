@@ -216,6 +216,15 @@ static iso_status read_length(double *length, const argument *given) {
     return ISO_OK;
 }
 
+static iso_status read_view(double view[2], const argument *given) {
+    const char *at = given->value;
+    if (!iso_number_read(&view[0], &at) || *at++ != ',' || !iso_number_read(&view[1], &at) || *at ||
+        view[1] < -90 || view[1] > 90)
+        return iso_fail(ISO_USAGE, "%s %.60s: two angles are due, as -60,30", given->written,
+                        given->value);
+    return ISO_OK;
+}
+
 static iso_status read_layers(iso_arguments *arguments, const argument *given) {
     const char *at = given->value;
     arguments->layer_count = 0;
@@ -368,6 +377,8 @@ static iso_status read_flag(iso_arguments *arguments, const argument *given) {
         return read_length(&arguments->voxel, given);
     case FLAG_layers:
         return read_layers(arguments, given);
+    case FLAG_view:
+        return read_view(arguments->view, given);
     case FLAG_help:
     case FLAG_version:
     case FLAG_list_options:
@@ -448,7 +459,8 @@ iso_status iso_arguments_read(iso_arguments *arguments, int argc, char **argv) {
     *arguments = (iso_arguments){.travels = true,
                                  .progress = isatty(STDERR_FILENO) == 1,
                                  .channels = iso_channel_defaults(),
-                                 .sides = 32};
+                                 .sides = 32,
+                                 .view = {-60, 30}};
     iso_options_defaults(&arguments->options);
     walk along = {.argc = argc, .at = 1, .argv = argv};
     for (int v = 0; v < ISO_VERB_COUNT && argc > 1; v++) {

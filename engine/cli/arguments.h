@@ -52,6 +52,7 @@ typedef struct iso_arguments {
     bool strict, quiet, progress, timestamp, travels, json;
     int32_t threads, columns;
     double voxel;                /* mm; 0: automatic */
+    double view[2];              /* degrees: azimuth and elevation of the eye */
     const char *output, *report; /* NULL if not given; borrowed from argv, as the files are */
     const char *const *file;
     int32_t file_count, config_count;

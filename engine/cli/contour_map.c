@@ -46,8 +46,7 @@ static map lay_out(const iso_slices *slices) {
     return m;
 }
 
-/* From blue at the bed over green to red at the top. */
-static void put_colour(char text[8], int32_t level, int32_t count) {
+void iso_contour_colour(char text[8], int32_t level, int32_t count) {
     int t = count > 1 ? (int)((int64_t)level * 510 / (count - 1)) : 0;
     int red = t > 255 ? t - 255 : 0, blue = t < 255 ? 255 - t : 0, green = 255 - red - blue;
     snprintf(text, 8, "#%02x%02x%02x", (80 + red * 5 / 8) & 255, (90 + green * 3 / 8) & 255,
@@ -93,7 +92,7 @@ static void put_level(iso_output *output, const map *m, const iso_slices *slices
     double left = m->gap + level % m->columns * m->width;
     double top = m->gap + level / m->columns * m->height;
     char colour[8], z[32], x[32], y[32];
-    put_colour(colour, level, slices->level_count);
+    iso_contour_colour(colour, level, slices->level_count);
     number(z, levels->cut[level]);
     iso_output_print(output, "<text x=\"%s\" y=\"%s\"><tspan font-weight=\"bold\">%d</tspan> %s mm",
                      number(x, left), number(y, top + m->letter), level + 1, z);

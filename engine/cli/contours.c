@@ -1,4 +1,5 @@
-/* isoslice contours: the iso-slice alone, as a link file, as JSON or as a picture in SVG. */
+/* isoslice contours: the iso-slice alone, as a link file, as JSON or as a picture in SVG.
+ * Those of curved layers are space_contours.c's. */
 #include <isoslice/link.h>
 #include <isoslice/object.h>
 #include <isoslice/slice.h>
@@ -11,6 +12,7 @@
 #include "config/settings_objects.h"
 #include "config/value.h"
 #include "contour_map.h"
+#include "space_contours.h"
 #include "verbs.h"
 #include "warnings.h"
 
@@ -158,6 +160,24 @@ static iso_status write_contours(const char *path, const cut *part) {
     return status;
 }
 
+static iso_status write_flat(const char *path, cut *part, const iso_options *options) {
+    ISO_TRY(find_levels(part, options));
+    ISO_TRY(slice_models(part));
+    return write_contours(path, part);
+}
+
+/* Flat layers in whatever words: a field that can be told without the model. */
+static bool is_flat(const iso_options *options) {
+    iso_field *field;
+    if (!*options->field)
+        return true;
+    if (iso_field_new(&field, options->field) != ISO_OK)
+        return false;
+    bool flat = iso_field_is_z(field);
+    iso_field_free(field);
+    return flat;
+}
+
 static iso_status warn(const iso_arguments *arguments) {
     iso_report report = {0};
     iso_status status = iso_warnings_add(&report, &arguments->notes);
@@ -185,11 +205,9 @@ iso_status iso_verb_contours(const iso_arguments *arguments) {
     iso_status status =
         load_objects(&part, arguments->file, arguments->file_count, &arguments->options);
     if (status == ISO_OK)
-        status = find_levels(&part, &arguments->options);
-    if (status == ISO_OK)
-        status = slice_models(&part);
-    if (status == ISO_OK)
-        status = write_contours(path, &part);
+        status = is_flat(&arguments->options)
+                     ? write_flat(path, &part, &arguments->options)
+                     : iso_space_contours(path, &part.objects, &part.instances, arguments);
     cut_free(&part);
     return status;
 }

@@ -180,6 +180,10 @@ ISO_API iso_status iso_link_digraph(int32_t *successor, int32_t edge_count, int3
 ISO_API iso_status iso_slices_to_link(iso_coloured_link *out, const iso_slices *slices,
                                       const iso_levels *levels) ISO_MUST_CHECK;
 
+/* Contours in space the same way, g = (x, y, z). */
+ISO_API iso_status iso_curves_to_link(iso_coloured_link *out,
+                                      const iso_curves *curves) ISO_MUST_CHECK;
+
 /* ---- Lattices: square-link, cubic-link, n-cube-link ---- */
 
 typedef struct iso_axis {

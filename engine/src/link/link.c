@@ -85,41 +85,75 @@ iso_status iso_link_digraph(int32_t *successor, int32_t edge_count, int32_t vert
     return status;
 }
 
-static void fill_contours(int32_t *successor, int32_t *colour, double *g, const iso_slices *slices,
-                          const iso_levels *levels) {
-    for (int32_t level = 0; level < slices->level_count; level++)
-        for (int32_t k = slices->level_first[level]; k < slices->level_first[level + 1]; k++) {
-            int32_t first = (int32_t)slices->contour_first[k];
-            int32_t end = (int32_t)slices->contour_first[k + 1];
+/* What slices and curves have in common. */
+typedef struct contours {
+    int32_t level_count;
+    const int32_t *level_first;
+    const int64_t *contour_first;
+    int64_t crossing_count;
+} contours;
+
+/* A link of contours; returns its g, which is still to be filled. NULL: out of memory. */
+static double *begin_contours(iso_multilink *made, const contours *c, int dimension) {
+    int32_t size = (int32_t)c->crossing_count;
+    *made = iso_multilink_begin(ISO_KIND_COLOURED_LINK, size, dimension);
+    int32_t *successor = iso_map_allocate(&made->map[0], size, size);
+    int32_t *colour = iso_map_allocate(&made->projection[0], size, c->level_count);
+    double *g = iso_multilink_allocate_g(made);
+    if (!successor || !colour || !g)
+        return NULL;
+    for (int32_t level = 0; level < c->level_count; level++)
+        for (int32_t k = c->level_first[level]; k < c->level_first[level + 1]; k++) {
+            int32_t first = (int32_t)c->contour_first[k];
+            int32_t end = (int32_t)c->contour_first[k + 1];
             for (int32_t i = first; i < end; i++) {
                 successor[i] = i + 1 < end ? i + 1 : first;
                 colour[i] = level;
-                *g++ = slices->point[i].x;
-                *g++ = slices->point[i].y;
-                if (levels)
-                    *g++ = levels->cut[level];
             }
         }
+    return g;
+}
+
+static iso_status check_crossings(int64_t count) {
+    if (count > INT32_MAX)
+        return iso_fail(ISO_OUTSIDE, "%lld crossings are more than a link can index (2^31 - 1)",
+                        (long long)count);
+    return ISO_OK;
 }
 
 iso_status iso_slices_to_link(iso_coloured_link *out, const iso_slices *slices,
                               const iso_levels *levels) {
+    contours c = {slices->level_count, slices->level_first, slices->contour_first,
+                  slices->crossing_count};
+    iso_multilink made;
     out->link = (iso_multilink){0};
-    if (slices->crossing_count > INT32_MAX)
-        return iso_fail(ISO_OUTSIDE, "%lld crossings are more than a link can index (2^31 - 1)",
-                        (long long)slices->crossing_count);
+    ISO_TRY(check_crossings(c.crossing_count));
     if (levels && levels->count != slices->level_count)
         return iso_fail(ISO_USAGE, "%d levels given for slices of %d levels", levels->count,
                         slices->level_count);
-    int32_t size = (int32_t)slices->crossing_count;
-    iso_multilink made = iso_multilink_begin(ISO_KIND_COLOURED_LINK, size, levels ? 3 : 2);
-    int32_t *successor = iso_map_allocate(&made.map[0], size, size);
-    int32_t *colour = iso_map_allocate(&made.projection[0], size, slices->level_count);
-    double *g = iso_multilink_allocate_g(&made);
-    int complete = successor && colour && g;
-    if (complete)
-        fill_contours(successor, colour, g, slices, levels);
-    return iso_multilink_finish(&out->link, &made, complete ? ISO_OK : ISO_NO_MEMORY);
+    double *g = begin_contours(&made, &c, levels ? 3 : 2), *to = g;
+    for (int64_t i = 0; to && i < c.crossing_count; i++) {
+        *to++ = slices->point[i].x;
+        *to++ = slices->point[i].y;
+        if (levels)
+            *to++ = levels->cut[made.projection[0].image[i]];
+    }
+    return iso_multilink_finish(&out->link, &made, g ? ISO_OK : ISO_NO_MEMORY);
+}
+
+iso_status iso_curves_to_link(iso_coloured_link *out, const iso_curves *curves) {
+    contours c = {curves->level_count, curves->level_first, curves->contour_first,
+                  curves->crossing_count};
+    iso_multilink made;
+    out->link = (iso_multilink){0};
+    ISO_TRY(check_crossings(c.crossing_count));
+    double *g = begin_contours(&made, &c, 3), *to = g;
+    for (int64_t i = 0; to && i < c.crossing_count; i++) {
+        *to++ = curves->point[i].x;
+        *to++ = curves->point[i].y;
+        *to++ = curves->point[i].z;
+    }
+    return iso_multilink_finish(&out->link, &made, g ? ISO_OK : ISO_NO_MEMORY);
 }
 
 iso_status iso_filling_link_new(iso_filling_link *out, int32_t crossing_count, const int32_t *arc,
