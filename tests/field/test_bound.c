@@ -29,7 +29,7 @@ static void make_box(iso_vec3 *low, iso_vec3 *high, uint64_t *state) {
     for (int c = 0; c < 3; c++) {
         end[0][c] = between(state, -20, 20);
         if (random_next(state) % 4 == 0)
-            end[0][c] = round(end[0][c] / 4) * 4;
+            end[0][c] = round(end[0][c] / 4) * 4 + 0.0; /* never -0 */
         end[1][c] = end[0][c] + size * random_unit(state);
         if (random_next(state) % 8 == 0)
             end[1][c] = random_next(state) % 2 ? end[0][c] : ceil(end[1][c]);
@@ -85,6 +85,77 @@ static void test_nothing_leaves(void) {
                     tally.steeper);
         iso_field_free(field);
     }
+}
+
+/* ---- expressions made at random ---- */
+
+typedef struct writer {
+    char text[2000];
+    int length;
+    uint64_t *state;
+} writer;
+
+static void put(writer *w, const char *text) {
+    w->length += snprintf(w->text + w->length, sizeof w->text - (size_t)w->length, "%s", text);
+}
+
+static void put_any(writer *w, int depth) {
+    static const char *const leaf[] = {"x", "y",   "z", "x", "y", "z",
+                                       "2", "0.5", "3", "7", "1", "0"};
+    static const char *const one[] = {"-(",   "abs(",   "sqrt(", "sin(",  "cos(",
+                                      "tan(", "asin(",  "acos(", "atan(", "exp(",
+                                      "log(", "floor(", "ceil(", "round("};
+    static const char *const two[] = {"min(", "max(", "mod(", "atan2(", "hypot("};
+    static const char *const between_two[] = {"+",  "-", "*", "/",  "^", "<",
+                                              ">=", "+", "*", "==", "!="};
+    uint64_t r = random_next(w->state) >> 8, kind = r % 16, which = r / 16;
+    if (depth == 0 || kind == 0) {
+        put(w, leaf[which % 12]);
+    } else if (kind < 5) {
+        put(w, one[which % 14]);
+        put_any(w, depth - 1);
+        put(w, ")");
+    } else if (kind < 7) {
+        put(w, two[which % 5]);
+        put_any(w, depth - 1);
+        put(w, ",");
+        put_any(w, depth - 1);
+        put(w, ")");
+    } else if (kind < 14) {
+        put(w, "(");
+        put_any(w, depth - 1);
+        put(w, ")");
+        put(w, between_two[which % 11]);
+        put(w, "(");
+        put_any(w, depth - 1);
+        put(w, ")");
+    } else {
+        int operands = which % 3 == 0 ? 5 : 3;
+        put(w, which % 3 == 0 ? "ramp(" : which % 3 == 1 ? "clamp(" : "((");
+        for (int i = 0; i < operands; i++) {
+            put_any(w, depth > 2 ? 1 : depth - 1);
+            put(w, i + 1 == operands ? ")" : which % 3 < 2 ? "," : i == 0 ? ")?(" : "):(");
+        }
+        put(w, which % 3 < 2 ? "" : ")");
+    }
+}
+
+static void test_nothing_leaves_random_expressions(void) {
+    uint64_t state = 11;
+    int bad = 0;
+    for (int i = 0; i < 4000; i++) {
+        writer w = {.state = &state};
+        put_any(&w, 1 + i % 4);
+        iso_field *field = field_of(w.text);
+        iso_tally tally = {0};
+        for (int k = 0; k < 6; k++)
+            try_box(&tally, field, &state);
+        bool good = tally.outside == 0 && tally.steeper == 0;
+        if (!good && bad++ < 5)
+            fprintf(stderr, "%s: %d outside, %d steeper\n", w.text, tally.outside, tally.steeper);
+        iso_field_free(field);
+    }
+    CHECK_EQUAL(0, bad);
 }
 
 static void test_nothing_leaves_blends(void) {
@@ -384,6 +455,7 @@ static void test_blend_refuses(void) {
 
 int main(void) {
     RUN(test_nothing_leaves);
+    RUN(test_nothing_leaves_random_expressions);
     RUN(test_nothing_leaves_blends);
     RUN(test_narrow);
     RUN(test_known);

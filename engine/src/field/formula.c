@@ -26,15 +26,20 @@ static uint8_t dependence(const uint8_t *slopes, int32_t place) {
     return place < FORMULA_VARIABLES ? (uint8_t)(1 << place) : slopes[place];
 }
 
-/* A steep slope of what doesn't change is none: the root of x^2 + y^2 at 0. */
+/* An infinite slope of what doesn't change is none, as of the root of x^2 + y^2 at 0; nor is one
+ * that doesn't matter. */
+static inline double number_or_0(double slope) {
+    return slope == slope ? slope : 0;
+}
+
 static void set_product(double *restrict to, const double *by, const double *slope, int32_t count) {
     for (int32_t i = 0; i < count; i++)
-        to[i] = slope[i] == 0 ? 0 : by[i] * slope[i];
+        to[i] = number_or_0(by[i] * slope[i]);
 }
 
 static void add_product(double *restrict to, const double *by, const double *slope, int32_t count) {
     for (int32_t i = 0; i < count; i++)
-        to[i] += slope[i] == 0 ? 0 : by[i] * slope[i];
+        to[i] += number_or_0(by[i] * slope[i]);
 }
 
 static void set_scaled(double *restrict to, double by, const double *slope, int32_t count) {
