@@ -306,7 +306,7 @@ static iso_status read_word(int *choice, const argument *given, const char *cons
 }
 
 static iso_status read_choice(iso_channel_options *channels, const argument *given) {
-    static const char *const mode[] = {"planar", "pointwise"};
+    static const char *const mode[] = {"planar", "pointwise", "geodesic"};
     static const char *const ports[] = {"none", "parallel", "series"};
     static const char *const side[] = {"left", "right", "front", "back"};
     int choice = 0;

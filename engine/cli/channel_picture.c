@@ -128,12 +128,17 @@ static iso_status add_grid(view *v, const grid *from, int32_t around, int32_t al
     return ISO_OK;
 }
 
+/* What is beside it is below it, so it goes over all that is not nearer than its nearest corner. */
 static iso_status add_lid(view *v, const grid *from) {
     iso_vec3 corner[CORNERS_MAX];
+    int32_t before = v->count;
     for (int32_t k = 0; k < PART_AROUND; k++)
         corner[k] =
             corner_of(from, (int32_t)((int64_t)from->width * k / PART_AROUND), from->height - 1);
-    return add_face(v, corner, PART_AROUND, true);
+    ISO_TRY(add_face(v, corner, PART_AROUND, true));
+    for (int32_t k = 0; k < PART_AROUND && v->count > before; k++)
+        v->face[before].depth = fmax(v->face[before].depth, vec3_dot(corner[k], v->eye));
+    return ISO_OK;
 }
 
 static iso_status add_towers(view *v, const iso_channels *channels, int32_t count) {

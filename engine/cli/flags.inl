@@ -29,7 +29,8 @@ ISO_FLAG(section, 0, "SHAPE", H,
 ISO_FLAG(sides, 0, "N", H, "Sides of a round or oval section's polygon, 3 to 256; usually 32.")
 ISO_FLAG(mode, 0, "MODE", H,
          "What the distance along the surface is: planar, a contour's mean, so that channels are "
-         "level; pointwise, each point's own. Usually planar.")
+         "level; pointwise, each point's own; geodesic, the shortest way on the triangles from the "
+         "part's lowest points, over its top too. Usually planar.")
 ISO_FLAG(start, 0, "MM", H,
          "Way from the part's lowest contour to the first channel, 0 to 1000; usually half the "
          "pitch.")

@@ -20,6 +20,7 @@
 typedef enum iso_channel_mode {
     ISO_CHANNEL_PLANAR,    /* a ring's mean: channels are level */
     ISO_CHANNEL_POINTWISE, /* each point's own: channels keep their distance on slanted parts too */
+    ISO_CHANNEL_GEODESIC,  /* the shortest way on the triangles from the part's lowest points */
     ISO_CHANNEL_MODE_COUNT
 } iso_channel_mode;
 
@@ -78,9 +79,10 @@ typedef struct iso_channel_options {
 ISO_API iso_channel_options iso_channel_defaults(void);
 
 /* One ring: a level of one tower. Its distances along the surface are measured anew, on a
- * square-link three times as fine. */
+ * square-link three times as fine; but for rings over the part's top, which no tower has. */
 typedef struct iso_channel_ring {
     int32_t tower, channel;
+    int32_t measured;         /* 0: mean, least and most are the height */
     double height;            /* mm along the surface that were asked for */
     double mean, least, most; /* mm that were measured */
     double z;                 /* mean, of the ring on the surface */

@@ -1,5 +1,6 @@
 /* From a part to channels: the stages in their order. */
 #include "channel/body.h"
+#include "height/height.h"
 
 enum { LEVELS_LEAST = 81, LEVELS_MOST = 2000, SAMPLES_LEAST = 100, SAMPLES_MOST = 1000 };
 
@@ -120,14 +121,18 @@ static iso_status build_towers(iso_channels *c) {
     return towers_build(&c->tower, &c->tower_count, &all, &options, &c->arena);
 }
 
-static iso_status ring_off(curve *out, iso_channels *c, const tower *t, double f, ring *outline,
-                           iso_arena *arena) {
+static iso_status push_ring(curve *out, iso_channels *c, const ring *outline) {
     ring_offset offset = {c->options.depth, c->bend / STEPS_A_BEND, c->part.tree};
     int32_t folds;
-    ISO_TRY(ring_of_tower(outline, t, f, SLOPE_REACH * c->options.depth, arena));
     ISO_TRY(ring_push_off(out, &folds, outline, &offset));
     c->figures.folds += folds;
     return ISO_OK;
+}
+
+static iso_status ring_off(curve *out, iso_channels *c, const tower *t, double f, ring *outline,
+                           iso_arena *arena) {
+    ISO_TRY(ring_of_tower(outline, t, f, SLOPE_REACH * c->options.depth, arena));
+    return push_ring(out, c, outline);
 }
 
 static iso_status note_ring(iso_channels *c, int32_t tower_index, double f, const ring *outline) {
@@ -237,12 +242,13 @@ static iso_status append_stairs(series *s, iso_channels *c, const tower *t) {
     return ISO_OK;
 }
 
-/* There and back: each ring begins at the end where the one below ends. */
+/* t is NULL where there is no square-link: the way from ring to ring is straight then.
+ * There and back: each ring begins at the end where the one below ends. */
 static iso_status add_to_series(iso_channels *c, series *s, const tower *t, double f,
                                 const curve *pushed) {
     curve opened;
     double middle = s->rings > 0 ? s->middle : NAN;
-    if (s->rings > 0)
+    if (s->rings > 0 && t)
         ISO_TRY(append_stairs(s, c, t));
     ISO_TRY(route_open(&opened, &middle, pushed, &c->side));
     iso_status status = route_append(&s->way, &opened, s->rings % 2 == 0);
@@ -294,11 +300,93 @@ static iso_status add_tower(iso_channels *c, int32_t index) {
     return status;
 }
 
+// Channels of the distance on the triangles
+
+/* From the lowest vertices; parts of the mesh that they have no way to are below all levels. */
+static iso_status find_distances(double *distance, double *most, const iso_mesh *mesh) {
+    double low = mesh->min.z + 1e-6 * (mesh->max.z - mesh->min.z);
+    int32_t *source, count = 0;
+    ISO_TRY(ISO_ALLOCATE(source, mesh->vertex_count));
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        if (mesh->position[v].z <= low)
+            source[count++] = v;
+    iso_status status = height_geodesic(distance, mesh, source, count);
+    iso_release(source);
+    ISO_TRY(status);
+    *most = 0;
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        distance[v] = isfinite(distance[v]) ? distance[v] : -1;
+        *most = distance[v] > *most ? distance[v] : *most;
+    }
+    return ISO_OK;
+}
+
+/* Contours on top of each other, from one that is on none or on several. */
+static iso_status add_chain(iso_channels *c, const contours *all, int32_t first, int32_t number) {
+    series s = {0};
+    iso_status status = ISO_OK;
+    for (int32_t at = first; at >= 0 && status == ISO_OK; at = all->next[at]) {
+        double f = all->level[all->at[at]];
+        ring outline;
+        curve pushed = {0};
+        status = ring_of_contour(&outline, all, at, c->mesh, &c->arena);
+        if (status == ISO_OK)
+            status = push_ring(&pushed, c, &outline);
+        if (status == ISO_OK)
+            status = note_ring(c, number, f, &outline);
+        if (status == ISO_OK)
+            status = c->options.ports == ISO_CHANNEL_SERIES ? add_to_series(c, &s, NULL, f, &pushed)
+                                                            : add_ring(c, &pushed);
+        curve_free(&pushed);
+    }
+    if (status == ISO_OK && s.rings > 0)
+        status = add_ported(c, &s.way);
+    curve_free(&s.way);
+    return status;
+}
+
+static iso_status add_chains(iso_channels *c, const contours *all) {
+    uint8_t *has_below;
+    int32_t number = 0;
+    ISO_TRY(ISO_PUSH(has_below, &c->arena, all->count));
+    for (int32_t i = 0; i < all->count; i++)
+        has_below[i] = 0;
+    for (int32_t i = 0; i < all->count; i++)
+        if (all->next[i] >= 0)
+            has_below[all->next[i]] = 1;
+    for (int32_t i = 0; i < all->count; i++) {
+        if (has_below[i] || (all->area[i] < 0 && !c->options.holes))
+            continue;
+        channels_report(c, 0.3 + 0.3 * i / all->count, "channels");
+        ISO_TRY(add_chain(c, all, i, number++));
+    }
+    return ISO_OK;
+}
+
+static iso_status add_geodesics(iso_channels *c) {
+    contours all = {0};
+    double *distance, most;
+    ISO_TRY(ISO_PUSH(distance, &c->arena, c->mesh->vertex_count));
+    ISO_TRY(find_distances(distance, &most, c->mesh));
+    double levels = floor((most - c->start) / c->options.pitch) + 1;
+    if (!(levels >= 1))
+        return ISO_OK;
+    all.level_count = between(levels, 1, LEVELS_MOST);
+    ISO_TRY(ISO_PUSH(all.level, &c->arena, all.level_count));
+    for (int32_t k = 0; k < all.level_count; k++)
+        all.level[k] = c->start + c->options.pitch * k;
+    ISO_TRY(contours_cut(&all, c->mesh, distance, &c->arena));
+    return add_chains(c, &all);
+}
+
 static iso_status add_all(iso_channels *c) {
-    for (int32_t i = 0; i < c->tower_count; i++) {
+    bool geodesic = c->options.mode == ISO_CHANNEL_GEODESIC;
+    for (int32_t i = 0; i < c->tower_count && !geodesic; i++) {
         channels_report(c, 0.3 + 0.3 * i / c->tower_count, "channels");
         ISO_TRY(add_tower(c, i));
     }
+    if (geodesic)
+        ISO_TRY(add_geodesics(c));
     if (c->figures.channel_count > 0)
         return ISO_OK;
     return iso_fail(ISO_UNSLICEABLE,
@@ -376,7 +464,8 @@ iso_status iso_channels_new(iso_channels **channels, const iso_mesh *mesh,
     *channels = NULL;
     ISO_TRY(check_options(options));
     ISO_TRY(make(channels, mesh, options));
-    for (int turn = 0; turn < REFINEMENTS && options->levels == 0; turn++) {
+    bool by_levels = options->levels == 0 && options->mode != ISO_CHANNEL_GEODESIC;
+    for (int turn = 0; turn < REFINEMENTS && by_levels; turn++) {
         iso_channels *better;
         double error = (*channels)->figures.pitch_max;
         finer.levels = REFINED * ((*channels)->options.levels - 1) + 1;

@@ -22,6 +22,7 @@ static iso_status collect(cutter *c, iso_arena *arena) {
     int32_t size = c->cut->size, points = 0;
     ISO_TRY(ISO_PUSH(c->contour, arena, size));
     ISO_TRY(ISO_PUSH(out->point, arena, size));
+    ISO_TRY(ISO_PUSH(out->face, arena, size));
     ISO_TRY(ISO_PUSH(out->first, arena, (int64_t)size + 1));
     ISO_TRY(ISO_PUSH(out->at, arena, size));
     ISO_TRY(ISO_PUSH(out->area, arena, size));
@@ -37,8 +38,10 @@ static iso_status collect(cutter *c, iso_arena *arena) {
             const double *g = c->cut->g + 3 * (int64_t)b;
             c->contour[b] = n;
             iso_vec3 p = {g[0], g[1], g[2]};
-            if (points == first || vec3_distance(p, out->point[points - 1]) > 1e-9)
-                out->point[points++] = p;
+            if (points > first && vec3_distance(p, out->point[points - 1]) <= 1e-9)
+                continue;
+            out->face[points] = c->dart[b] / 3;
+            out->point[points++] = p;
         }
         iso_vec3 o = out->point[first];
         for (int32_t i = first + 1; i + 1 < points; i++)
@@ -102,6 +105,27 @@ static iso_status find_pieces(cutter *c, iso_arena *arena) {
     return ISO_OK;
 }
 
+/* What is on top of what: pieces with one contour below and one above. */
+static iso_status find_next(contours *out, int32_t pieces, iso_arena *arena) {
+    int32_t *floors, *roofs, *lowest;
+    ISO_TRY(ISO_PUSH(out->next, arena, out->count));
+    ISO_TRY(ISO_PUSH(floors, arena, pieces));
+    ISO_TRY(ISO_PUSH(roofs, arena, pieces));
+    ISO_TRY(ISO_PUSH(lowest, arena, pieces));
+    for (int32_t p = 0; p < pieces; p++)
+        floors[p] = roofs[p] = 0, lowest[p] = -1;
+    for (int32_t c = 0; c < out->count; c++) {
+        floors[out->floor[c]]++;
+        roofs[out->roof[c]]++;
+        lowest[out->floor[c]] = c;
+        out->next[c] = -1;
+    }
+    for (int32_t c = 0; c < out->count; c++)
+        if (floors[out->roof[c]] == 1 && roofs[out->roof[c]] == 1)
+            out->next[lowest[out->roof[c]]] = c;
+    return ISO_OK;
+}
+
 static iso_status cut(cutter *c, const iso_double_link *surface, iso_arena *arena) {
     iso_coloured_link crossings;
     double *height;
@@ -118,6 +142,8 @@ static iso_status cut(cutter *c, const iso_double_link *surface, iso_arena *aren
     status = collect(c, arena);
     if (status == ISO_OK)
         status = find_pieces(c, arena);
+    if (status == ISO_OK)
+        status = find_next(c->out, c->mesh->vertex_count + 2 * c->out->count, arena);
     iso_multilink_free(&crossings.link);
     return status;
 }

@@ -5,6 +5,11 @@
 
 enum { FINER = 3 };
 
+/* Of the pitch: farther than this off all towers there is nothing to measure by, as on the part's
+ * top; nor is a ring of which there is more than the other share. */
+#define OFF 0.1
+#define MISSED 0.01
+
 typedef struct measure {
     const iso_channels *c;
     iso_arena arena;
@@ -95,7 +100,7 @@ static const tower *tower_at(const measure *m, iso_vec3 p) {
 static void measure_ring(const measure *m, iso_channel_ring *out, const ring *r, double *squares,
                          int64_t *count) {
     const tower *t = tower_at(m, r->point[0]);
-    double sum = 0, length = 0;
+    double sum = 0, length = 0, missed = 0;
     out->least = INFINITY;
     out->most = -INFINITY;
     for (int32_t i = 0; i < r->count && t; i++) {
@@ -103,8 +108,10 @@ static void measure_ring(const measure *m, iso_channel_ring *out, const ring *r,
         iso_vec3 after = r->point[i + 1 < r->count ? i + 1 : 0];
         double height,
             weight = vec3_distance(before, r->point[i]) + vec3_distance(r->point[i], after);
-        if (height_of(&height, t, r->point[i]) == INFINITY)
+        if (height_of(&height, t, r->point[i]) > OFF * m->c->options.pitch) {
+            missed += weight;
             continue;
+        }
         out->least = fmin(out->least, height);
         out->most = fmax(out->most, height);
         sum += weight * height;
@@ -115,8 +122,9 @@ static void measure_ring(const measure *m, iso_channel_ring *out, const ring *r,
             ++*count;
         }
     }
-    out->mean = length > 0 ? sum / length : out->height;
-    if (length == 0)
+    out->measured = length > 0 && missed < MISSED * length;
+    out->mean = out->measured ? sum / length : out->height;
+    if (!out->measured)
         out->least = out->most = out->height;
 }
 
@@ -126,7 +134,7 @@ static void sum_up(iso_channel_figures *f, double pitch, double squares, int64_t
     f->spread_rms = count > 0 ? sqrt(squares / (double)count) : 0;
     for (int32_t i = 1; i < f->ring_count; i++) {
         const iso_channel_ring *a = &f->ring[i - 1], *b = &f->ring[i];
-        if (a->tower != b->tower)
+        if (a->tower != b->tower || !a->measured || !b->measured || b->height <= a->height)
             continue;
         double way = b->mean - a->mean, error = way / (b->height - a->height) - 1;
         measured += way;

@@ -13,12 +13,29 @@
 #define LIFTS 4
 
 iso_status ring_of_tower(ring *r, const tower *t, double f, double reach, iso_arena *arena) {
-    r->count = t->samples;
+    *r = (ring){.count = t->samples};
     ISO_TRY(ISO_PUSH(r->point, arena, r->count));
     ISO_TRY(ISO_PUSH(r->up, arena, r->count));
     for (int32_t i = 0; i < r->count; i++) {
         r->point[i] = tower_point(t, i, f);
         r->up[i] = vec3_minus(tower_point(t, i, f + reach), tower_point(t, i, f - reach));
+    }
+    return ISO_OK;
+}
+
+iso_status ring_of_contour(ring *r, const contours *all, int32_t contour, const iso_mesh *mesh,
+                           iso_arena *arena) {
+    int32_t first = all->first[contour];
+    *r = (ring){.count = all->first[contour + 1] - first};
+    ISO_TRY(ISO_PUSH(r->point, arena, r->count));
+    ISO_TRY(ISO_PUSH(r->normal, arena, r->count));
+    for (int32_t i = 0; i < r->count; i++) {
+        int32_t face = all->face[first + (i + 1 < r->count ? i + 1 : 0)];
+        const int32_t *v = mesh->origin + 3 * (int64_t)face;
+        iso_vec3 a = mesh->position[v[0]];
+        r->point[i] = all->point[first + i];
+        r->normal[i] = vec3_unit(
+            vec3_cross(vec3_minus(mesh->position[v[1]], a), vec3_minus(mesh->position[v[2]], a)));
     }
     return ISO_OK;
 }
@@ -36,6 +53,8 @@ static iso_vec3 edge_of(const ring *r, int32_t i) {
 
 /* Out of the part, at the edge from point i on. */
 static iso_vec3 normal_of(const ring *r, int32_t i) {
+    if (r->normal)
+        return r->normal[i];
     return vec3_unit(
         vec3_cross(edge_of(r, i), vec3_plus(r->up[i], r->up[i + 1 < r->count ? i + 1 : 0])));
 }

@@ -10,12 +10,17 @@
  * edge x up leads out of the part. */
 typedef struct ring {
     iso_vec3 *point, *up; /* [count] */
+    iso_vec3 *normal;     /* [count] out of the part, at the edge from a point on; NULL: see up */
     int32_t count;
 } ring;
 
 /* A level of a tower that all of its columns have, in the arena: its iso-slice, point by point. */
 iso_status ring_of_tower(ring *r, const tower *t, double f, double reach,
                          iso_arena *arena) ISO_MUST_CHECK;
+
+/* A contour of a mesh, with the normals of its triangles. In the arena. */
+iso_status ring_of_contour(ring *r, const contours *all, int32_t contour, const iso_mesh *mesh,
+                           iso_arena *arena) ISO_MUST_CHECK;
 
 typedef struct ring_offset {
     double depth;            /* mm */

@@ -19,7 +19,6 @@ typedef struct builder {
     const contours *all;
     const tower_options *options;
     iso_arena *arena;
-    int32_t *next;  /* [contours] the one on top of it, or -1 */
     double *height; /* [contours] largest F there; below 0: not known */
     double *place;  /* [samples] along the contour, unwrapped, rising */
     double *moved;  /* [samples] */
@@ -33,34 +32,20 @@ static double wrap(double place, double whole) {
     return place - whole * floor(place / whole);
 }
 
-// What is on top of what
-
-/* roofs and floors of a piece are what bounds it above and below */
-static iso_status find_next(builder *b) {
+static iso_status list_floors(builder *b) {
     const contours *all = b->all;
-    int32_t pieces = 0, *floors, *roofs;
+    int32_t pieces = 0;
     for (int32_t c = 0; c < all->count; c++) {
         pieces = all->roof[c] >= pieces ? all->roof[c] + 1 : pieces;
         pieces = all->floor[c] >= pieces ? all->floor[c] + 1 : pieces;
     }
-    ISO_TRY(ISO_PUSH(b->next, b->arena, all->count));
     ISO_TRY(ISO_PUSH(b->link, b->arena, all->count));
     ISO_TRY(ISO_PUSH(b->lead, b->arena, pieces));
-    ISO_TRY(ISO_PUSH(floors, b->arena, pieces));
-    ISO_TRY(ISO_PUSH(roofs, b->arena, pieces));
     for (int32_t p = 0; p < pieces; p++)
-        floors[p] = roofs[p] = 0, b->lead[p] = -1;
+        b->lead[p] = -1;
     for (int32_t c = 0; c < all->count; c++) {
-        floors[all->floor[c]]++;
-        roofs[all->roof[c]]++;
         b->link[c] = b->lead[all->floor[c]];
         b->lead[all->floor[c]] = c;
-        b->next[c] = -1;
-    }
-    for (int32_t c = 0; c < all->count; c++) {
-        int32_t piece = all->roof[c];
-        if (floors[piece] == 1 && roofs[piece] == 1)
-            b->next[b->lead[piece]] = c;
     }
     return ISO_OK;
 }
@@ -234,7 +219,7 @@ static iso_status build(tower *t, builder *b, int32_t contour) {
     polyline line;
     double height;
     int32_t rings = 1, last = contour;
-    for (; b->next[last] >= 0; last = b->next[last])
+    for (; b->all->next[last] >= 0; last = b->all->next[last])
         rings++;
     *t = (tower){.samples = b->options->samples, .hole = b->all->area[contour] < 0};
     ISO_TRY(ISO_PUSH(t->g, b->arena, (int64_t)t->samples * rings));
@@ -245,7 +230,7 @@ static iso_status build(tower *t, builder *b, int32_t contour) {
     begin(b, t, &line, height);
     iso_arena_pop(b->arena, mark);
     t->rings = 1;
-    for (int32_t c = b->next[contour]; c >= 0; c = b->next[c])
+    for (int32_t c = b->all->next[contour]; c >= 0; c = b->all->next[c])
         ISO_TRY(add_ring(b, t, c));
     const double *f = t->f + (int64_t)t->samples * (t->rings - 1);
     for (int32_t i = 0; i < t->samples; i++)
@@ -271,7 +256,7 @@ iso_status towers_build(tower **out, int32_t *count, const contours *all,
     uint8_t *has_below;
     int32_t *order, *first;
     *count = 0;
-    ISO_TRY(find_next(&b));
+    ISO_TRY(list_floors(&b));
     ISO_TRY(push_scratch(&b));
     ISO_TRY(ISO_PUSH(*out, arena, all->count));
     ISO_TRY(ISO_PUSH(has_below, arena, all->count));
@@ -289,8 +274,8 @@ iso_status towers_build(tower **out, int32_t *count, const contours *all,
         has_below[c] = 0;
     }
     for (int32_t c = 0; c < all->count; c++)
-        if (b.next[c] >= 0)
-            has_below[b.next[c]] = 1;
+        if (all->next[c] >= 0)
+            has_below[all->next[c]] = 1;
     for (int32_t k = 0; k < all->count; k++) {
         int32_t c = order[k];
         if (has_below[c] || (all->area[c] < 0 && !options->holes))

@@ -16,9 +16,11 @@ typedef struct contours {
     double *level;  /* [level_count] ascending */
     int32_t *first; /* [count + 1] */
     iso_vec3 *point;
+    int32_t *face;         /* [points] triangle that the edge before the point is on */
     int32_t *at;           /* [count] level */
     double *area;          /* [count] mm^2 seen from above; below 0 around a hole */
     int32_t *roof, *floor; /* [count] number of the piece of surface right below, right above */
+    int32_t *next; /* [count] the one on top of it, if the piece between has no more; or -1 */
 } contours;
 
 /* Cut by height[vertex_count] at out->level. The rest of *out, to be zeros, comes into the arena.

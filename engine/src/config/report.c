@@ -307,9 +307,11 @@ static void write_rings(iso_json *json, const iso_channel_figures *f) {
         iso_json_integer(json, "tower", f->ring[i].tower + 1);
         iso_json_integer(json, "channel", f->ring[i].channel + 1);
         iso_json_number(json, "height_mm", f->ring[i].height);
-        iso_json_number(json, "measured_mm", f->ring[i].mean);
-        iso_json_number(json, "least_mm", f->ring[i].least);
-        iso_json_number(json, "most_mm", f->ring[i].most);
+        if (f->ring[i].measured) {
+            iso_json_number(json, "measured_mm", f->ring[i].mean);
+            iso_json_number(json, "least_mm", f->ring[i].least);
+            iso_json_number(json, "most_mm", f->ring[i].most);
+        }
         iso_json_number(json, "z_mm", f->ring[i].z);
         iso_json_number(json, "length_mm", f->ring[i].length);
         iso_json_end(json, '}');
