@@ -621,6 +621,66 @@ static void test_large_turns_go_around(void) {
     iso_paths_free(&layer);
 }
 
+/* With points to go by, too; and what is printed may reach further out than both ends. */
+static void test_large_turns_clear_what_reaches_out(void) {
+    pose_machine machine = table(ISO_KINEMATICS_TABLE_BC);
+    iso_paths layer = {0};
+    iso_vec3 east = {1, 0, 0.2}, west = {-1, 0, 0.2}, up = {0, 0, 1}, place[2], normal[2];
+    east = vec3_unit(east);
+    west = vec3_unit(west);
+    for (int i = 0; i < 3; i++) {
+        iso_vec3 n = i == 0 ? up : i == 1 ? east : west;
+        for (int k = 0; k < 2; k++) {
+            normal[k] = n;
+            place[k] = vec3_along(machine.pivot, i == 0 ? 35 : 20, n);
+            place[k].y += k;
+        }
+        add_path(&layer, &(iso_path){.role = ISO_ROLE_PERIMETER}, place, normal, 2, 0.2);
+        iso_vec3 above = vec3_along(place[0], 1, n);
+        if (i > 0)
+            add_travel(&layer, &above, normal, 1, 0.2);
+    }
+    iso_gcode_options o = bare();
+    iso_gcode_totals totals;
+    o.machine = &machine;
+    o.watch = watch;
+    o.watch_payload = &seen;
+    seen = (watched){.fail_at = -1};
+    free(print_layers(&totals, &o, &layer, 1, "XYZBC"));
+    double least = 1e9;
+    for (int i = 1; i < seen.count; i++) {
+        const iso_gcode_move *m = &seen.move[i];
+        double turn = vec3_dot(m->from_normal, m->to_normal);
+        iso_vec3 middle = vec3_between(m->from, m->to, 0.5);
+        if (m->width > 0 || turn > cos(1 * pi / 180))
+            continue;
+        least = fmin(least, vec3_distance(middle, machine.pivot));
+    }
+    CHECK(least > 35 && least < 1e9);
+    iso_paths_free(&layer);
+}
+
+/* A tool is changed without a retraction: where the nozzle is then is said by G94. */
+static void test_tools_change_on_machines_that_turn(void) {
+    pose_machine machine = mandrel();
+    iso_paths layer = {0};
+    add_coil(&layer, &machine, 12, 1, 3, 73);
+    add_coil(&layer, &machine, 14, 1, 0, 73);
+    layer.path[1].tool = 1;
+    iso_gcode_options o = bare();
+    iso_gcode_totals totals;
+    o.machine = &machine;
+    o.rotary_feed = ISO_FEED_INVERSE_TIME;
+    o.flavour = ISO_FLAVOUR_REPRAPFIRMWARE;
+    o.tools = 2;
+    char *text = print_layers(&totals, &o, &layer, 1, "XYZQA");
+    if (!CHECK(strstr(text, "\nT1\nG94\nG1 Z45 F7800\nG1 X20 Y100\n")))
+        fputs(text, stderr);
+    CHECK(totals.time > 2 && totals.time < 20);
+    free(text);
+    iso_paths_free(&layer);
+}
+
 /* Without bounds of acceleration a print takes what F says, whichever way it is said. */
 static void test_time_is_that_of_the_file(void) {
     double time[2];
@@ -658,7 +718,8 @@ static void test_time_is_that_of_the_file(void) {
 static void test_z_offset_is_the_machines(void) {
     pose_machine machine = mandrel();
     iso_paths layer = {0};
-    add_coil(&layer, &machine, 12, 1, 0, 73);
+    add_coil(&layer, &machine, 12, 355. / 360, 0, 72);
+    layer.path[0].closed = 1;
     iso_gcode_options o = bare();
     iso_gcode_totals totals;
     o.machine = &machine;
@@ -756,6 +817,8 @@ int main(void) {
     RUN(test_compensated_feed);
     RUN(test_tip_stays_on_its_path);
     RUN(test_large_turns_go_around);
+    RUN(test_large_turns_clear_what_reaches_out);
+    RUN(test_tools_change_on_machines_that_turn);
     RUN(test_time_is_that_of_the_file);
     RUN(test_z_offset_is_the_machines);
     RUN(test_closed_rings_go_on);

@@ -258,6 +258,10 @@ static void test_paths_go_around(void) {
         CHECK_NEAR(machine.pivot.y, pose[i].at.y, 1e-4);
     }
     CHECK_NEAR(1080, last.angle[1], 1e-3);
+    iso_paths_clear(&paths);
+    add_arc(&paths, &machine, 0, -360, true);
+    CHECK_OK(pose_paths(pose, NULL, &last, &paths, 0, &machine));
+    CHECK_NEAR(720, last.angle[1], 1e-3); /* where it closes */
     iso_paths_free(&paths);
 }
 

@@ -36,8 +36,7 @@ static stand here(const iso_head *head) {
 }
 
 static bool is_known(const iso_head *head) {
-    return head->x != UNKNOWN && head->z != UNKNOWN &&
-           (!head->machine || head->angle[1] != INT64_MIN);
+    return head->x != UNKNOWN && head->z != UNKNOWN; /* the angles are with them */
 }
 
 static bool is_same(const stand *a, const stand *b) {
@@ -247,7 +246,7 @@ static void go(iso_head *head, const stand *goal, const stroke *s) {
     stand from = here(head);
     stand steady = head->machine && is_known(head) ? steadied(&from, goal) : *goal;
     const stand *to = &steady;
-    bool known = is_known(head), timed = head->machine && known;
+    bool known = is_known(head), timed = head->machine && known && !head->doubtful;
     iso_vec3 normal;
     double time = 0;
     if (is_same(&from, to) && !head->doubtful)
@@ -262,9 +261,11 @@ static void go(iso_head *head, const stand *goal, const stroke *s) {
     int64_t e = s->width > 0 ? take_e(head) : 0;
     if (e != 0)
         p = put_e(head, p, e);
-    if (timed) {
+    if (head->machine && known) {
         double mm = vec3_distance(tip_of(&normal, head, &from), tip_of(&normal, head, to));
         time = time_of(head, &from, to, mm, s->feed);
+    }
+    if (timed) {
         p = put_fine_feed(head, p, &from, to, time);
     } else {
         p = put_feed(head, p, s->feed);
