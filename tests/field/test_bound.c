@@ -143,7 +143,7 @@ static void put_any(writer *w, int depth) {
 static void test_nothing_leaves_random_expressions(void) {
     uint64_t state = 11;
     int bad = 0;
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 12000; i++) {
         writer w = {.state = &state};
         put_any(&w, 1 + i % 4);
         iso_field *field = field_of(w.text);
@@ -396,7 +396,7 @@ static void test_blend(void) {
     CHECK_OK(iso_field_blend(&field, curved, 2.5, 2, 10));
     uint64_t state = 4;
     int wrong = 0, steep = 0, falls = 0;
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 12000; i++) {
         iso_vec3 p = point_within(&state, 14), g = gradient_at(field, p);
         double s = smooth_step((p.z - 2) / 8), cone = value_at(other, p) - 2.5;
         wrong += fabs(value_at(field, p) - (p.z + s * (cone - p.z))) > 1e-13;

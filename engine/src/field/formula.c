@@ -44,12 +44,12 @@ static void add_product(double *restrict to, const double *by, const double *slo
 
 static void set_scaled(double *restrict to, double by, const double *slope, int32_t count) {
     for (int32_t i = 0; i < count; i++)
-        to[i] = by * slope[i];
+        to[i] = by == 0 ? 0 : by * slope[i];
 }
 
 static void add_scaled(double *restrict to, double by, const double *slope, int32_t count) {
     for (int32_t i = 0; i < count; i++)
-        to[i] += by * slope[i];
+        to[i] += by == 0 ? 0 : by * slope[i];
 }
 
 static void run_slopes(const run *r, const formula_step *step, const double *const *from,

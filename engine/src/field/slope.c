@@ -59,6 +59,12 @@ static double share(double a, double norm) {
     return norm > 0 ? a / norm : 0;
 }
 
+/* a / (a^2 + b^2) */
+static double by_square(double a, double b) {
+    double norm = series_hypotenuse(a, b);
+    return norm > 0 ? a / norm / norm : 0;
+}
+
 /* ---- of arrays ---- */
 
 SLOPE_OF2(slope_multiply, b, a)
@@ -79,7 +85,7 @@ SLOPE_OF1(slope_tan, 1 + v * v)
 SLOPE_OF1(slope_asin, 1 / sqrt((1 - a) * (1 + a)))
 SLOPE_OF1(slope_acos, -1 / sqrt((1 - a) * (1 + a)))
 SLOPE_OF1(slope_atan, 1 / (1 + a * a))
-SLOPE_OF2(slope_atan2, share(b, a *a + b * b), -share(a, a *a + b * b))
+SLOPE_OF2(slope_atan2, by_square(b, a), -by_square(a, b))
 SLOPE_OF1(slope_exp, v)
 SLOPE_OF1(slope_log, 1 / a)
 SLOPE_OF2(slope_hypot, share(a, v), share(b, v))

@@ -70,7 +70,8 @@ void spread_subtract(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, by, from, 2, slopes);
 }
 
-/* Infinity times zero is no number; in a slope it is nothing. */
+/* Infinity times zero is no number; in a slope it is nothing. What may not be a number stays so
+ * when it is multiplied by zero. */
 static bool has_no_product(interval a, interval b) {
     return (!interval_is_finite(a) && interval_has(b, 0)) ||
            (!interval_is_finite(b) && interval_has(a, 0));
@@ -78,7 +79,11 @@ static bool has_no_product(interval a, interval b) {
 
 void spread_multiply(spread *to, const spread *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value, by[2] = {b, a};
-    to->value = has_no_product(a, b) ? interval_whole() : interval_multiply(a, b);
+    if (has_no_product(a, b)) {
+        nothing_known(to, from, 2, slopes);
+        return;
+    }
+    to->value = interval_multiply(a, b);
     chain(to, by, from, 2, slopes);
 }
 
@@ -129,8 +134,8 @@ static interval positive_log(interval a) {
 
 void spread_power(spread *to, const spread *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
-    bool fixed = b.low == b.high;
-    if (fixed && floor(b.low) == b.low && fabs(b.low) <= 1024) {
+    bool fixed = b.low == b.high, is_known = interval_is_finite(a) || b.low >= 0;
+    if (fixed && is_known && floor(b.low) == b.low && fabs(b.low) <= 1024) {
         to->value = whole_power(a, b.low);
         interval by[2] = {interval_multiply(b, whole_power(a, b.low - 1)),
                           interval_multiply(to->value, positive_log(a))};
