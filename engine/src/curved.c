@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/angle.h"
 #include "base/memory.h"
 #include "base/series.h"
 #include "base/vector.h"
