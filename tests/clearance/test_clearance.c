@@ -233,6 +233,20 @@ static void test_order(void) {
     }
 }
 
+/* Nothing was added. */
+static void test_nothing(void) {
+    clearance *check;
+    clearance_hit hit;
+    bool found = true;
+    clearance_tool tool = scene_tool();
+    CHECK_OK(clearance_new(&check, &tool));
+    CHECK_OK(clearance_check(&hit, &found, check, true));
+    CHECK(!found);
+    CHECK_OK(clearance_check(&hit, &found, check, false));
+    clearance_free(check);
+    clearance_free(NULL);
+}
+
 static void test_message(void) {
     clearance_tool tool = scene_tool();
     clearance_hit hit;
@@ -312,6 +326,7 @@ int main(void) {
     RUN(test_travel);
     RUN(test_ends_of_travel);
     RUN(test_order);
+    RUN(test_nothing);
     RUN(test_message);
     RUN(test_bad_tools);
     RUN(test_outside);

@@ -7,15 +7,17 @@
 #include "base/vector.h"
 
 /* Runs are as short as makes boxes small, and long enough to make them few. */
-#define RUN_EXTENT 3.0 /* mm */
-enum { RUN_BEADS = 12 };
+#define RUN_EXTENT 6.0 /* mm */
+enum { RUN_BEADS = 16 };
 
 #define BOX_MARGIN 0.002f /* mm: more than all rounding here */
 
 void beads_free(bead_store *beads) {
     for (int i = 0; i < beads->tree_count; i++)
         beads->table->tree_free(beads->tree[i]);
-    iso_release(beads->bead);
+    for (int64_t i = 0; i * BEADS_BLOCK < beads->count; i++)
+        iso_release(beads->block[i]);
+    iso_release(beads->block);
     iso_release(beads->box);
     iso_release(beads->first);
     iso_release(beads->pair);
@@ -23,7 +25,9 @@ void beads_free(bead_store *beads) {
 }
 
 int64_t beads_bytes(const bead_store *beads) {
-    return beads->capacity * (int64_t)sizeof(bead_packed) +
+    return ((beads->count + BEADS_BLOCK - 1) / BEADS_BLOCK) * BEADS_BLOCK *
+               (int64_t)sizeof(bead_packed) +
+           beads->block_capacity * (int64_t)sizeof *beads->block +
            beads->box_capacity * (int64_t)sizeof *beads->box +
            beads->first_capacity * (int64_t)sizeof *beads->first +
            beads->pair_capacity * (int64_t)sizeof *beads->pair;
@@ -38,28 +42,57 @@ static int16_t to_part(double x) {
     return (int16_t)(x * 32767 + (x < 0 ? -0.5 : 0.5));
 }
 
-static uint16_t to_um(double mm) {
-    return (uint16_t)fmin(65535, fmax(1, mm * 1000 + 0.5));
+enum { DOWN = 1 << 15 };
+
+static uint16_t to_um(double mm, double z) {
+    double um = fmin(DOWN - 1, fmax(1, mm * 1000 + 0.5));
+    return (uint16_t)((uint16_t)um | (z < 0 ? DOWN : 0));
 }
 
-static void pack(int32_t at[3], int16_t normal[3], iso_vec3 place, iso_vec3 unit) {
+static void pack(int32_t at[3], int16_t normal[2], iso_vec3 place, iso_vec3 unit) {
     at[0] = iso_units(place.x);
     at[1] = iso_units(place.y);
     at[2] = iso_units(place.z);
     normal[0] = to_part(unit.x);
     normal[1] = to_part(unit.y);
-    normal[2] = to_part(unit.z);
 }
 
-/* The box of a bead: of its tip's line, and of the most that it is around. */
-static void box_of(double low[3], double high[3], const bead_packed *bead) {
-    double around = (fmax(bead->width, bead->height)) / 2000.0, below = bead->height / 1000.0;
-    for (int k = 0; k < 3; k++) {
-        double a = iso_mm(bead->from[k]), b = iso_mm(bead->to[k]);
-        double down = fmin(0, fmin(-bead->from_normal[k], -bead->to_normal[k])) / 32767 * below;
-        double up = fmax(0, fmax(-bead->from_normal[k], -bead->to_normal[k])) / 32767 * below;
-        low[k] = fmin(a, b) - around + down;
-        high[k] = fmax(a, b) + around + up;
+static iso_vec3 place_of(const int32_t at[3]) {
+    return vec3(iso_mm(at[0]), iso_mm(at[1]), iso_mm(at[2]));
+}
+
+static iso_vec3 normal_of(const int16_t n[2], bool down) {
+    double x = n[0] / 32767.0, y = n[1] / 32767.0, z = sqrt(fmax(0, 1 - x * x - y * y));
+    return vec3_unit(vec3(x, y, down ? -z : z));
+}
+
+int64_t beads_move(const bead_store *beads, int64_t i) {
+    return beads->block[i / BEADS_BLOCK][i % BEADS_BLOCK].move;
+}
+
+clearance_move beads_get(const bead_store *beads, int64_t i) {
+    const bead_packed *bead = &beads->block[i / BEADS_BLOCK][i % BEADS_BLOCK];
+    return (clearance_move){place_of(bead->from),
+                            place_of(bead->to),
+                            normal_of(bead->from_normal, bead->width & DOWN),
+                            normal_of(bead->to_normal, bead->height & DOWN),
+                            (bead->width & ~DOWN) / 1000.0,
+                            (bead->height & ~DOWN) / 1000.0};
+}
+
+void beads_box(double low[3], double high[3], const clearance_move *bead) {
+    double across = bead->width < bead->height ? bead->width : bead->height;
+    double disc = (bead->width - across) / 2, ball = across / 2;
+    for (int end = 0; end < 2; end++) {
+        iso_vec3 tip = end ? bead->to : bead->from;
+        iso_vec3 normal = end ? bead->to_normal : bead->from_normal;
+        const double at[3] = {tip.x, tip.y, tip.z}, n[3] = {normal.x, normal.y, normal.z};
+        for (int k = 0; k < 3; k++) {
+            double middle = at[k] - ball * n[k];
+            double around = ball + disc * sqrt(n[k] * n[k] < 1 ? 1 - n[k] * n[k] : 0);
+            low[k] = end && low[k] < middle - around ? low[k] : middle - around;
+            high[k] = end && high[k] > middle + around ? high[k] : middle + around;
+        }
     }
 }
 
@@ -92,17 +125,21 @@ iso_status beads_add(bead_store *beads, const clearance_move *move, int64_t inde
                         "the print goes beyond what can be checked for collisions at "
                         "(%.3f, %.3f, %.3f) mm, move %lld",
                         move->to.x, move->to.y, move->to.z, (long long)index);
-    ISO_TRY(ISO_GROW(beads->bead, beads->capacity, beads->count + 1));
+    int64_t block = beads->count / BEADS_BLOCK;
     ISO_TRY(ISO_GROW(beads->box, beads->box_capacity, 6 * ((int64_t)beads->box_count + 1)));
     ISO_TRY(ISO_GROW(beads->first, beads->first_capacity, (int64_t)beads->box_count + 2));
-    bead_packed *bead = beads->bead + beads->count;
+    if (beads->count % BEADS_BLOCK == 0) {
+        ISO_TRY(ISO_GROW(beads->block, beads->block_capacity, block + 1));
+        ISO_TRY(ISO_ALLOCATE(beads->block[block], BEADS_BLOCK));
+    }
+    bead_packed *bead = beads->block[block] + beads->count % BEADS_BLOCK;
     pack(bead->from, bead->from_normal, move->from, move->from_normal);
     pack(bead->to, bead->to_normal, move->to, move->to_normal);
-    bead->width = to_um(move->width);
-    bead->height = to_um(move->height);
+    bead->width = to_um(move->width, move->from_normal.z);
+    bead->height = to_um(move->height, move->to_normal.z);
     bead->move = (uint32_t)index;
     double low[3], high[3];
-    box_of(low, high, bead);
+    beads_box(low, high, move);
     for (int k = 0; k < 3; k++) {
         beads->low[k] = beads->count ? fmin(beads->low[k], low[k]) : low[k];
         beads->high[k] = beads->count ? fmax(beads->high[k], high[k]) : high[k];
@@ -110,21 +147,6 @@ iso_status beads_add(bead_store *beads, const clearance_move *move, int64_t inde
     enter(beads, low, high);
     beads->count++;
     return ISO_OK;
-}
-
-static iso_vec3 place_of(const int32_t at[3]) {
-    return vec3(iso_mm(at[0]), iso_mm(at[1]), iso_mm(at[2]));
-}
-
-static iso_vec3 normal_of(const int16_t n[3]) {
-    return vec3_unit(vec3(n[0], n[1], n[2]));
-}
-
-clearance_move beads_get(const bead_store *beads, int64_t i) {
-    const bead_packed *bead = beads->bead + i;
-    return (clearance_move){place_of(bead->from),         place_of(bead->to),
-                            normal_of(bead->from_normal), normal_of(bead->to_normal),
-                            bead->width / 1000.0,         bead->height / 1000.0};
 }
 
 /* Trees for all boxes there are. Boxes that are in one don't grow any more. */

@@ -1,6 +1,6 @@
 /* All beads so far, and which of them lie in a box.
  *
- * A bead takes 44 bytes. Runs of neighbours share a box; of the boxes Embree makes trees, each at
+ * A bead takes 40 bytes. Runs of neighbours share a box; of the boxes Embree makes trees, each at
  * least twice as large as the next, so that a box goes into few of them while beads come in. Trees
  * are made when somebody asks: a print in which nothing is doubtful has none. */
 #ifndef ISO_CLEARANCE_BEADS_H
@@ -9,12 +9,13 @@
 #include "clearance/clearance.h"
 #include "solid/tree.h"
 
-enum { BEADS_TREES = 32 };
+enum { BEADS_TREES = 32, BEADS_BLOCK = 2048 };
 
-/* Micrometres for thickness, normals in 32767ths, places in iso_units. */
+/* Places in iso_units, width and height in micrometres; of normals x and y in 32767ths, and whether
+ * z is below 0 as the highest bit of width, at `from`, or height. */
 typedef struct bead_packed {
     int32_t from[3], to[3];
-    int16_t from_normal[3], to_normal[3];
+    int16_t from_normal[2], to_normal[2];
     uint16_t width, height;
     uint32_t move;
 } bead_packed;
@@ -25,9 +26,9 @@ typedef struct beads_pair {
 } beads_pair;
 
 typedef struct bead_store {
-    int64_t count, capacity;
-    bead_packed *bead;
-    int32_t box_count; /* of runs of beads; the last run may still grow */
+    int64_t count, block_capacity;
+    bead_packed **block; /* of BEADS_BLOCK each, so that none is moved or kept in vain */
+    int32_t box_count;   /* of runs of beads; the last run may still grow */
     int64_t box_capacity, first_capacity;
     float *box;             /* [6 box_count] least x y z, largest x y z */
     int64_t *first;         /* [box_count + 1] beads of each run */
@@ -47,6 +48,10 @@ int64_t beads_bytes(const bead_store *beads); /* without Embree's */
 /* ISO_OUTSIDE: beyond ISO_COORDINATE_MAX. */
 iso_status beads_add(bead_store *beads, const clearance_move *move, int64_t index) ISO_MUST_CHECK;
 clearance_move beads_get(const bead_store *beads, int64_t i);
+int64_t beads_move(const bead_store *beads, int64_t i); /* that left it */
+
+/* The box around a bead. */
+void beads_box(double low[3], double high[3], const clearance_move *bead);
 
 /* Boxes of beads that meet those of box[6 count], by query, then by box. The array is the beads'
  * own, until the next call. */

@@ -162,7 +162,8 @@ static iso_status look_at(clearance *check, int64_t count) {
         ISO_TRY(ask_ground(check));
     check->waiting -= count;
     check->settled -= check->settled < count ? check->settled : count;
-    memmove(check->move, check->move + count, (size_t)check->waiting * sizeof *check->move);
+    if (count > 0)
+        memmove(check->move, check->move + count, (size_t)check->waiting * sizeof *check->move);
     return check->doubtful >= DOUBTFUL ? decide(check) : ISO_OK;
 }
 

@@ -183,14 +183,27 @@ static iso_vec3 tip_near(const clearance_move *move, iso_vec3 place) {
     return vec3_between(move->from, move->to, least_of(1, most_of(0, t)));
 }
 
-static void look_at(clearance_hit *hit, bool *found, const exact_search *search,
-                    const exact_piece *piece, int32_t box) {
+/* Does the bead's box meet what was asked for? */
+static bool is_near(const clearance_move *bead, const float *box) {
+    double low[3], high[3];
+    beads_box(low, high, bead);
+    for (int k = 0; k < 3; k++)
+        if (low[k] > box[3 + k] || high[k] < box[k])
+            return false;
+    return true;
+}
+
+static void look_at(clearance_hit *hit, bool *found, const exact_search *search, beads_pair pair) {
     const bead_store *beads = search->beads;
+    const exact_piece *piece = search->piece + search->of[pair.query];
     const exact_move *move = search->move + piece->move;
-    for (int64_t i = beads->first[box]; i < beads->first[box + 1]; i++) {
-        if (beads->bead[i].move >= move->index)
+    const float *box = search->box + 6 * (int64_t)pair.query;
+    for (int64_t i = beads->first[pair.box]; i < beads->first[pair.box + 1]; i++) {
+        if (beads_move(beads, i) >= move->index)
             return;
         clearance_move earlier = beads_get(beads, i);
+        if (!is_near(&earlier, box))
+            continue;
         touch_bead bead = touch_bead_of(&earlier);
         double reach = reach_to(piece, &earlier);
         touch_sweep sweep = piece->sweep;
@@ -203,7 +216,7 @@ static void look_at(clearance_hit *hit, bool *found, const exact_search *search,
             continue;
         *found = true;
         *hit = (clearance_hit){.move = move->index,
-                               .bead = beads->bead[i].move,
+                               .bead = beads_move(beads, i),
                                .tip = tip_near(&move->move, place),
                                .place = place,
                                .depth = depth,
@@ -225,7 +238,7 @@ static iso_status check_batch(clearance_hit *hit, bool *found, exact_search *sea
         const exact_piece *piece = search->piece + search->of[pair[i].query];
         if (*found && hit->move != search->move[piece->move].index)
             break;
-        look_at(hit, found, search, piece, pair[i].box);
+        look_at(hit, found, search, pair[i]);
     }
     return ISO_OK;
 }

@@ -319,7 +319,9 @@ static bool under_nozzle(const ground_map *ground, const ground_reach *reach,
     return top <= reach->z + cone_height(ground, x * x + y * y, reach->raise);
 }
 
-/* Is the nozzle above the cell's plane, wherever that goes? */
+/* Is the nozzle above the cell's plane? Wherever the plane goes: its tip and its upper end are. Or
+ * in the cell: there a plane is, that touches the cone where it faces the cell. Planes above planes
+ * are so everywhere if at the corners. */
 static bool above_cell(const ground_map *ground, const ground_step *step, const ground_cell *cell,
                        const double middle[2]) {
     double gx = cell->slope[0] / SLOPE_STEPS, gy = cell->slope[1] / SLOPE_STEPS;
@@ -327,11 +329,20 @@ static bool above_cell(const ground_map *ground, const ground_step *step, const 
     double radius = ground->radius + ground->shrink * ground->tool->tangent;
     double least = least_of(step->raise + ground->shrink - steep * most_of(0, radius),
                             ground->cone_height - steep * ground->cone_radius);
-    for (int end = 0; end < 2; end++) {
-        iso_vec3 tip = end ? step->to : step->from;
-        if (cell->plane + gx * (tip.x - middle[0]) + gy * (tip.y - middle[1]) > tip.z + least)
+    double x[2] = {middle[0] - step->from.x, middle[0] - step->to.x};
+    double y[2] = {middle[1] - step->from.y, middle[1] - step->to.y};
+    double over[2] = {cell->plane - step->from.z, cell->plane - step->to.z}; /* the tip */
+    if (over[0] - gx * x[0] - gy * y[0] <= least && over[1] - gx * x[1] - gy * y[1] <= least)
+        return true;
+    double wx = x[0] + x[1], wy = y[0] + y[1], length = sqrt(wx * wx + wy * wy);
+    if (length < CELL)
+        return false;
+    wx *= ground->inverse / length;
+    wy *= ground->inverse / length;
+    double corner = (fabs(gx - wx) + fabs(gy - wy)) * (CELL / 2) + ground->radius * ground->inverse;
+    for (int end = 0; end < 2; end++)
+        if (over[end] + corner > step->raise + wx * x[end] + wy * y[end])
             return false;
-    }
     return true;
 }
 
