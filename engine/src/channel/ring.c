@@ -88,6 +88,15 @@ static iso_status put_corner(pushing *p, int32_t i, iso_vec3 from, iso_vec3 to) 
     return ISO_OK;
 }
 
+/* Between corners, for some of an edge's points may turn out to be too near and others not. */
+static iso_status put_edge(pushing *p, int32_t i, iso_vec3 normal) {
+    iso_vec3 edge = edge_of(p->ring, i);
+    double pieces = ceil(vec3_length(edge) / p->offset->step);
+    for (double k = 1; k < pieces; k++)
+        ISO_TRY(put(p, vec3_along(p->ring->point[i], k / pieces, edge), normal));
+    return ISO_OK;
+}
+
 static iso_status put_all(pushing *p) {
     const ring *r = p->ring;
     iso_vec3 before = {0, 0, 0};
@@ -98,6 +107,7 @@ static iso_status put_all(pushing *p) {
         if (vec3_dot(normal, normal) == 0)
             continue; /* no edge at all */
         ISO_TRY(put_corner(p, i, before, normal));
+        ISO_TRY(put_edge(p, i, normal));
         before = normal;
     }
     return ISO_OK;
