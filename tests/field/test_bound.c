@@ -49,6 +49,11 @@ typedef struct iso_tally {
     int outside, steeper, unknown;
 } iso_tally;
 
+/* At most, along one axis; places are known to 1e-13 mm or so. */
+static double rise(double way, double low, double high) {
+    return way == 0 ? 0 : (fabs(way) * (1 + 1e-9) + 1e-13) * fmax(-low, high);
+}
+
 static void try_box(iso_tally *tally, const iso_field *field, uint64_t *state) {
     iso_vec3 low, high, at[SAMPLES], gradient[SAMPLES];
     double value[SAMPLES];
@@ -64,12 +69,10 @@ static void try_box(iso_tally *tally, const iso_field *field, uint64_t *state) {
         tally->outside += !holds(&b, value[i], gradient[i]);
     for (int i = 1; i < SAMPLES; i++) { /* what the slopes say of any two points */
         iso_vec3 way = vec3_minus(at[i], at[i - 1]);
-        double most = 1e-12;
-        most += way.x == 0 ? 0 : fabs(way.x) * fmax(-b.gradient_low.x, b.gradient_high.x);
-        most += way.y == 0 ? 0 : fabs(way.y) * fmax(-b.gradient_low.y, b.gradient_high.y);
-        most += way.z == 0 ? 0 : fabs(way.z) * fmax(-b.gradient_low.z, b.gradient_high.z);
-        tally->steeper +=
-            fabs(value[i] - value[i - 1]) > most * (1 + 1e-9) + 1e-12 * fabs(value[i]);
+        double most = rise(way.x, b.gradient_low.x, b.gradient_high.x) +
+                      rise(way.y, b.gradient_low.y, b.gradient_high.y) +
+                      rise(way.z, b.gradient_low.z, b.gradient_high.z);
+        tally->steeper += fabs(value[i] - value[i - 1]) > most + 1e-12 * (1 + fabs(value[i]));
     }
 }
 
