@@ -12,7 +12,7 @@
 #include "base/output.h"
 #include "config/settings_objects.h"
 #include "config/value.h"
-#include "height/height.h"
+#include "slice/range.h"
 #include "space_map.h"
 
 typedef struct cut {
@@ -20,7 +20,7 @@ typedef struct cut {
     const iso_objects *objects;
     const iso_instances *instances;
     iso_field **field; /* [objects] */
-    double *low;       /* [objects] its least value at a vertex */
+    double *low;       /* [objects] its least value */
     double span;       /* the largest range of all */
     double *level;     /* [levels] of the object at hand */
     iso_levels levels; /* above the least value */
@@ -46,29 +46,13 @@ static void cut_free(cut *c) {
 
 /* ---- fields and levels ---- */
 
-static iso_status widen(double range[2], const iso_field *field, const iso_mesh *mesh) {
-    double *height;
-    ISO_TRY(ISO_ALLOCATE(height, mesh->vertex_count));
-    height_of_vertices(height, field, mesh);
-    for (int32_t v = 0; v < mesh->vertex_count; v++) {
-        range[0] = fmin(range[0], height[v]);
-        range[1] = fmax(range[1], height[v]);
-    }
-    iso_release(height);
-    return ISO_OK;
-}
-
 static iso_status open_field(cut *c, int32_t i) {
     const iso_object *object = &c->objects->object[i];
     iso_vec3 origin = {object->origin.x, object->origin.y, object->floor};
-    double range[2] = {INFINITY, -INFINITY};
+    double range[2];
     ISO_TRY(iso_field_open(&c->field[i], c->options->field, object->mesh, object->mesh_count,
                            c->options->field_slope, origin));
-    for (int32_t m = 0; m < object->mesh_count; m++)
-        ISO_TRY(widen(range, c->field[i], &object->mesh[m]));
-    if (!isfinite(range[0]) || !isfinite(range[1]))
-        return iso_fail(ISO_UNSLICEABLE, "%s: the field has no value on some of the model",
-                        object->name);
+    ISO_TRY(field_range(range, c->field[i], object->mesh, object->mesh_count));
     c->low[i] = range[0];
     c->span = fmax(c->span, range[1] - range[0]);
     return ISO_OK;

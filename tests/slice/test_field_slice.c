@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "models/shapes.h"
 #include "slice/fields.h"
+#include "slice/range.h"
 
 #include <isoslice/slice.h>
 
@@ -428,6 +429,71 @@ static void test_touching(void) {
     iso_mesh_free(&mesh);
 }
 
+/* What hides inside faces counts, as far as samples can tell. */
+static void test_range(void) {
+    test_field f[] = {test_round(4, -4, 0, (iso_vec3){1, 1, 0}),
+                      test_wave(3, 7),
+                      test_saddle(1, -2, 0.2, 0.1),
+                      test_cone(2, 3, 0.5),
+                      test_round(20, 1, 2, (iso_vec3){1, 1, 1}),
+                      test_plane(0.48, 0.6, 0.64)};
+    double expected[][2] = {
+        {0, hypot(14, 14)},          {-13, 13},    {-23.4, 26.8}, {-10, 10 + 0.5 * hypot(12, 13)},
+        {10, sqrt(900 + 121 + 144)}, {-17.2, 17.2}};
+    iso_mesh mesh[2];
+    make_cube(&mesh[0]);
+    make_noisy(&mesh[1], 24, 77); /* all of it inside */
+    for (int32_t v = 0; v < mesh[1].vertex_count; v++) {
+        iso_vec3 *p = &mesh[1].position[v];
+        *p = (iso_vec3){p->x / 2, p->y / 2, p->z / 2};
+    }
+    for (size_t i = 0; i < sizeof f / sizeof *f; i++) {
+        double range[2];
+        if (!CHECK_OK(field_range(range, &f[i].field, mesh, 2)))
+            continue;
+        CHECK_NEAR(expected[i][0], range[0], 0.0011);
+        CHECK_NEAR(expected[i][1], range[1], 0.0011);
+    }
+    double range[2];
+    test_field root = test_root(3);
+    CHECK_STATUS(ISO_BAD_CONFIG, field_range(range, &root.field, mesh, 2));
+    CHECK_STATUS(ISO_BAD_CONFIG, field_range(range, &f[0].field, mesh, 0));
+    iso_mesh_free(&mesh[0]);
+    iso_mesh_free(&mesh[1]);
+}
+
+/* Half a turn's jump in a field is no layer. */
+static void jump(double *value, iso_vec3 *gradient, const iso_vec3 *at, int64_t count,
+                 void *payload) {
+    (void)payload;
+    for (int64_t i = 0; i < count; i++) {
+        value[i] = at[i].z + (at[i].x > 1.23 ? 5 : 0);
+        if (gradient)
+            gradient[i] = (iso_vec3){0, 0, 1};
+    }
+}
+static void jump_bound(iso_field_bound *bound, iso_vec3 low, iso_vec3 high, void *payload) {
+    (void)payload;
+    double x = low.x <= 1.23 && high.x > 1.23 ? INFINITY : 0;
+    *bound = (iso_field_bound){low.z, high.z + 5, {-x, 0, 1}, {x, 0, 1}};
+}
+
+static void test_jump(void) {
+    iso_mesh mesh;
+    iso_curves c;
+    iso_field *field;
+    double level[] = {0, 3, 6}, rise, x, y, z;
+    make_cube(&mesh);
+    CHECK_OK(iso_field_from_function(&field, jump, jump_bound, 0, NULL));
+    CHECK_STATUS(ISO_UNSLICEABLE, iso_slice_field(&c, &mesh, field, level, 3, NULL));
+    CHECK(sscanf(iso_error_message(), "the field jumps by %lf mm at (%lf, %lf, %lf)", &rise, &x, &y,
+                 &z) == 4);
+    CHECK_NEAR(5, rise, 0.1);
+    CHECK_NEAR(1.23, x, 0.005);
+    iso_field_free(field);
+    iso_mesh_free(&mesh);
+}
+
 static void test_no_value(void) {
     iso_mesh mesh;
     iso_curves c = {0};
@@ -491,6 +557,8 @@ int main(void) {
     RUN(test_coaxial);
     RUN(test_noisy);
     RUN(test_touching);
+    RUN(test_range);
+    RUN(test_jump);
     RUN(test_no_value);
     RUN(test_bad_use);
     RUN(test_allocation_failures);
