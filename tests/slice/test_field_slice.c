@@ -438,7 +438,7 @@ static void test_range(void) {
                       test_round(20, 1, 2, (iso_vec3){1, 1, 1}),
                       test_plane(0.48, 0.6, 0.64)};
     double expected[][2] = {
-        {0, hypot(14, 14)},          {-13, 13},    {-23.4, 26.8}, {-10, 10 + 0.5 * hypot(12, 13)},
+        {0, hypot(14, 14)},          {-13, 13},    {-27.4, 22.6}, {-10, 10 + 0.5 * hypot(12, 13)},
         {10, sqrt(900 + 121 + 144)}, {-17.2, 17.2}};
     iso_mesh mesh[2];
     make_cube(&mesh[0]);

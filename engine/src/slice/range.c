@@ -11,7 +11,7 @@
 /* mm: what the range may be off. */
 #define RANGE_EXACTNESS 0.001
 
-enum { RANGE_DEPTH = 12 /* times that a face is quartered */ };
+enum { RANGE_DEPTH = 16 /* times that a face is quartered */ };
 
 typedef struct range_search {
     const iso_field *field;
