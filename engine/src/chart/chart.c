@@ -9,25 +9,41 @@ static const double pi = 3.14159265358979323846;
 
 /* ---- making ---- */
 
-/* A box around the part by a tenth of it: brims and travels leave it. */
-static void bound_around(iso_field_bound *bound, const iso_field *field, const iso_vec3 box[2]) {
-    iso_vec3 more = vec3_times(vec3_minus(box[1], box[0]), 0.1);
-    iso_field_bound_over(bound, field, vec3_minus(box[0], more), vec3_plus(box[1], more));
+/* A box around the part, as large again on each side: brims and travels leave it. */
+static void bound_above(iso_field_bound *bound, const iso_field *field, const iso_vec3 box[2],
+                        double z) {
+    iso_vec3 more = vec3_minus(box[1], box[0]), low = vec3_minus(box[0], more);
+    low.z = z;
+    iso_field_bound_over(bound, field, low, vec3_plus(box[1], more));
 }
 
-/* Layers of planes and cones are convex along every line. Others may have waves; such as are
- * shorter than a few of these steps can't be printed. */
-static double reach_of(const iso_field *field) {
+/* Everywhere, nowhere, or from some height on: what is bent from a flat base isn't bent any more
+ * there. A height that is a little too large costs a little time. */
+static double find_even(const iso_field *field, const iso_vec3 box[2], double rise) {
+    enum { STEPS = 32 };
+    double height = box[1].z - box[0].z, even = HUGE_VAL;
+    for (int k = STEPS; k >= -1; k--) {
+        double z = k >= 0 ? box[0].z + height * k / STEPS : box[0].z - height;
+        iso_field_bound bound;
+        bound_above(&bound, field, box, z);
+        if (!(bound.gradient_low.z > 0 &&
+              bound.gradient_high.z - bound.gradient_low.z <= 1e-12 * rise))
+            break;
+        even = k >= 0 ? z : -HUGE_VAL;
+    }
+    return even;
+}
+
+/* Layers of planes and cones are convex along every line: two normals say it all. */
+static bool is_convex(const iso_field *field) {
     iso_field_kind kind = iso_field_kind_of(field);
-    if (field_curved_part(field)) /* bent into a flat base */
-        return 1;
-    return kind == ISO_FIELD_PLANE || kind == ISO_FIELD_CONE ? 0 : 1;
+    return kind == ISO_FIELD_PLANE || kind == ISO_FIELD_CONE;
 }
 
 static void make_graph(chart *c, const iso_vec3 box[2]) {
     iso_field_bound bound;
     iso_vec3 gradient;
-    bound_around(&bound, c->field, box);
+    bound_above(&bound, c->field, box, 2 * box[0].z - box[1].z);
     c->kind = CHART_GRAPH;
     c->middle = vec3_between(box[0], box[1], 0.5);
     c->stride = vec3_distance(box[0], box[1]) + 1;
@@ -36,8 +52,7 @@ static void make_graph(chart *c, const iso_vec3 box[2]) {
     if (!isfinite(c->value))
         c->value = c->middle.z;
     c->rises = bound.gradient_low.z > 0;
-    c->even = c->rises && bound.gradient_high.z - bound.gradient_low.z <= 1e-12 * c->rise;
-    c->reach = reach_of(c->field);
+    c->even_above = find_even(c->field, box, c->rise);
 }
 
 /* Any direction across the axis. */
@@ -140,6 +155,8 @@ iso_status chart_new(chart **made, const iso_field *field, bool turns, const iso
         *c = (chart){.field = field};
         make_graph(c, box);
         iso_status status = check_box(c, box);
+        if (status == ISO_OK && !is_convex(field))
+            status = graph_reach(&c->reach, c, box, range);
         if (status != ISO_OK) {
             iso_release(c);
             return status;
@@ -165,6 +182,15 @@ double chart_period(const chart *map) {
 
 double chart_reach(const chart *map) {
     return map->reach;
+}
+
+/* The layer along the chord is taken for the cubic that has its slopes at the ends: of a bump the
+ * height is at most a quarter of the larger slope, of a wave less. */
+double chart_rise(const chart_point *a, const chart_point *b) {
+    iso_vec3 chord = vec3_minus(b->at, a->at);
+    double up = -vec3_dot(chord, a->normal), down = vec3_dot(chord, b->normal);
+    double larger = fabs(up) > fabs(down) ? up : down;
+    return larger * (up * down > 0 ? 0.25 : 4.0 / 27);
 }
 
 /* Lines of the equal-area map bend on the sphere the more, the farther down they are. */

@@ -50,6 +50,10 @@ double chart_period(const chart *chart);
  * enough how it runs on the layer; 0: of any line. */
 double chart_reach(const chart *chart);
 
+/* mm that the layer is off the straight line from a to b, as the normals there tell: above it if
+ * positive. */
+double chart_rise(const chart_point *a, const chart_point *b);
+
 /* How much farther a straight line in the chart may swerve sideways on the layer, near `point`,
  * than it bends with it: a factor on that, 0 where straight lines stay straight. */
 double chart_swerve(const chart *chart, const chart_point *point);

@@ -78,38 +78,11 @@ static iso_status no_layer(const search *s, double r) {
                     r, s->at[0].x, s->at[0].y);
 }
 
-static iso_status lift_block(chart_point *point, const chart *map, const iso_vec2 *flat, double r,
-                             double start, int32_t count) {
-    search s = {.count = count};
-    for (int32_t i = 0; i < count; i++) {
-        s.index[i] = i;
-        s.at[i] = vec3(flat[i].x, flat[i].y, start);
-        s.low[i] = -HUGE_VAL;
-        s.high[i] = HUGE_VAL;
-    }
-    for (int round = 0; s.count > 0; round++) {
+static iso_status run_search(chart_point *point, const chart *map, search *s, double r) {
+    for (int round = 0; s->count > 0; round++) {
         if (round == ROUNDS_MOST)
-            return no_layer(&s, r);
-        advance(point, map, &s, r);
-    }
-    return ISO_OK;
-}
-
-/* F = rise z + something of x and y: one look is enough. */
-static iso_status lift_even(chart_point *point, const chart *map, const iso_vec2 *flat, double r,
-                            int32_t count) {
-    iso_vec3 at[BLOCK] = {{0, 0, 0}}, gradient[BLOCK];
-    double value[BLOCK];
-    for (int32_t i = 0; i < count; i++)
-        at[i] = vec3(flat[i].x, flat[i].y, map->middle.z);
-    iso_field_evaluate(value, gradient, map->field, at, count);
-    for (int32_t i = 0; i < count; i++) {
-        at[i].z += (r - value[i]) / gradient[i].z;
-        if (!isfinite(at[i].z)) {
-            search s = {.at[0] = at[i]};
-            return no_layer(&s, r);
-        }
-        accept(&point[i], at[i], gradient[i]);
+            return no_layer(s, r);
+        advance(point, map, s, r);
     }
     return ISO_OK;
 }
@@ -117,19 +90,61 @@ static iso_status lift_even(chart_point *point, const chart *map, const iso_vec2
 /* Means over the layer are the values halfway down, but for what goes with the square of the
  * thickness. */
 static void take_means(chart_point *point, const chart *map, double thickness, int32_t count) {
-    iso_vec3 at[BLOCK] = {{0, 0, 0}}, gradient[BLOCK];
+    iso_vec3 at[BLOCK], gradient[BLOCK];
     double value[BLOCK];
+    int32_t index[BLOCK], n = 0;
     for (int32_t i = 0; i < count; i++) {
-        at[i] = point[i].at;
-        at[i].z -= 0.5 * thickness * point[i].volume;
+        double z = point[i].at.z - 0.5 * thickness * point[i].volume;
+        if (z >= map->even_above)
+            continue;
+        at[n] = vec3(point[i].at.x, point[i].at.y, z);
+        index[n++] = i;
     }
-    iso_field_evaluate(value, gradient, map->field, at, count);
-    for (int32_t i = 0; i < count; i++) {
-        if (!(gradient[i].z > 0))
+    if (n > 0)
+        iso_field_evaluate(value, gradient, map->field, at, n);
+    for (int32_t k = 0; k < n; k++) {
+        if (!(gradient[k].z > 0))
             continue; /* beneath the part, where there needn't be layers: as it is above */
-        point[i].thickness = 1 / vec3_length(gradient[i]);
-        point[i].volume = 1 / gradient[i].z;
+        point[index[k]].thickness = 1 / vec3_length(gradient[k]);
+        point[index[k]].volume = 1 / gradient[k].z;
     }
+}
+
+/* F = rise z + something of x and y, above some height: one look is enough, wherever that is. What
+ * turns out to lie lower is left to the search. */
+static void lift_even(chart_point *point, const chart *map, search *s, const iso_vec2 *flat,
+                      double r, int32_t count) {
+    double start = isinf(map->even_above) ? map->middle.z : map->even_above;
+    for (int32_t i = 0; i < count; i++)
+        s->at[i] = vec3(flat[i].x, flat[i].y, start);
+    iso_field_evaluate(s->value, s->rising, map->field, s->at, count);
+    for (int32_t i = 0; i < count; i++) {
+        iso_vec3 at = s->at[i];
+        at.z += (r - s->value[i]) / s->rising[i].z;
+        if (at.z >= map->even_above && fabs(at.z) < HUGE_VAL) {
+            accept(&point[i], at, s->rising[i]);
+            continue;
+        }
+        s->index[s->count++] = i;
+    }
+}
+
+static iso_status lift_block(chart_point *point, const chart *map, const iso_vec2 *flat, double r,
+                             double start, int32_t count) {
+    search s;
+    s.count = 0; /* the rest is written before it is read */
+    if (map->even_above < HUGE_VAL)
+        lift_even(point, map, &s, flat, r, count);
+    else
+        for (; s.count < count; s.count++)
+            s.index[s.count] = s.count;
+    for (int32_t k = 0; k < s.count; k++) {
+        int32_t i = s.index[k];
+        s.at[k] = vec3(flat[i].x, flat[i].y, start);
+        s.low[i] = -HUGE_VAL;
+        s.high[i] = HUGE_VAL;
+    }
+    return run_search(point, map, &s, r);
 }
 
 iso_status graph_lift(chart_point *point, const chart *map, const iso_vec2 *flat,
@@ -137,10 +152,6 @@ iso_status graph_lift(chart_point *point, const chart *map, const iso_vec2 *flat
     double start = map->middle.z + (layer[0] - map->value) / map->rise;
     for (int64_t i = 0; i < count; i += BLOCK) {
         int32_t here = (int32_t)(count - i < BLOCK ? count - i : BLOCK);
-        if (map->even) {
-            ISO_TRY(lift_even(point + i, map, flat + i, layer[0], here));
-            continue;
-        }
         ISO_TRY(lift_block(point + i, map, flat + i, layer[0], start, here));
         start = point[i + here - 1].at.z;
         if (layer[1] > 0)

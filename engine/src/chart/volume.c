@@ -213,7 +213,7 @@ iso_status chart_volume(double *volume, const chart *map, const iso_slices *slic
         *volume = sum_edges(map, slices, level, moment_of) / map->radius * layer[1];
         return ISO_OK;
     }
-    if (map->kind == CHART_GRAPH && !map->even)
+    if (map->kind == CHART_GRAPH && map->even_above > -HUGE_VAL)
         return graph_volume(volume, map, slices, level, layer, scratch);
     ISO_TRY(factor_of(&factor, map, layer));
     *volume =

@@ -186,7 +186,7 @@ static int32_t choose_vertices(lift_task *t, int64_t first, int64_t last) {
     for (int64_t i = first; i < last; count++) {
         int64_t end = line_end(t, i);
         t->chosen[count] = i;
-        t->rise[count] = sample_rise(&t->samples.point[i], &t->samples.point[end]);
+        t->rise[count] = chart_rise(&t->samples.point[i], &t->samples.point[end]);
         i = end;
     }
     t->chosen[count] = last;

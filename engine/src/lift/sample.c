@@ -22,15 +22,6 @@ iso_vec2 sample_step(const chart *map, iso_vec2 a, iso_vec2 b) {
     return step;
 }
 
-/* The layer along the chord is taken for the cubic that has its slopes at the ends: of a bump the
- * height is at most a quarter of the larger slope, of a wave less. */
-double sample_rise(const chart_point *a, const chart_point *b) {
-    iso_vec3 chord = vec3_minus(b->at, a->at);
-    double up = -vec3_dot(chord, a->normal), down = vec3_dot(chord, b->normal);
-    double larger = fabs(up) > fabs(down) ? up : down;
-    return larger * (up * down > 0 ? 0.25 : 4.0 / 27);
-}
-
 static double larger_share(double a, double b) {
     return (a > b ? a - b : b - a) / (a < b ? a : b);
 }
@@ -38,7 +29,7 @@ static double larger_share(double a, double b) {
 /* How much a piece takes of what it may, as its ends tell: pieces that it should be. */
 static double need_of(const chart_point *a, const chart_point *b, const chart *map,
                       const sample_limits *limits) {
-    double rise = fabs(sample_rise(a, b));
+    double rise = fabs(chart_rise(a, b));
     double need = sqrt(fmax(rise / limits->bump, rise * chart_swerve(map, b) / limits->tolerance));
     if (limits->turn > 0)
         need = fmax(need, vec3_distance(a->normal, b->normal) / limits->turn);

@@ -30,9 +30,6 @@ static inline bool sample_is_last(const samples *s, int64_t i) {
 /* b - a the short way, where the chart wraps. */
 iso_vec2 sample_step(const chart *map, iso_vec2 a, iso_vec2 b);
 
-/* mm that the layer is off the chord of a piece: above it if positive. */
-double sample_rise(const chart_point *a, const chart_point *b);
-
 /* Is the straight line from sample i to j, on the same line, good enough? */
 bool sample_fits(const samples *s, int64_t i, int64_t j, const chart *map,
                  const sample_limits *limits);

@@ -10,9 +10,9 @@
 static const double coarse = 0.25;
 /* And turn by so much more. */
 static const double wide_turn = 2;
-/* The layer is off a chord by as much as the slopes at its ends tell, but for what they don't: it
- * is passed by so much more. */
-static const double doubt = 1.3;
+/* The layer is off a chord by as much as the normals at its ends tell if it bends evenly, by twice
+ * that if it has a crease halfway. */
+static const double doubt = 2;
 
 /* A travel that is to be sampled: from where the nozzle is to the first vertex of a path. */
 typedef struct way {
@@ -63,11 +63,12 @@ static iso_vec3 above(const lift_task *t, const chart_point *on, double height) 
     return at;
 }
 
-/* By how much the layer stands above the chords at a sample. */
+/* By how much the layer may stand above the chords at a sample. A wave does so whatever its sign.
+ */
 static double bump_at(const samples *s, int64_t i, int64_t begin) {
-    double before = i > begin ? sample_rise(&s->point[i - 1], &s->point[i]) : 0;
-    double after = !sample_is_last(s, i) ? sample_rise(&s->point[i], &s->point[i + 1]) : 0;
-    return doubt * fmax(0, fmax(before, after));
+    double before = i > begin ? fabs(chart_rise(&s->point[i - 1], &s->point[i])) : 0;
+    double after = !sample_is_last(s, i) ? fabs(chart_rise(&s->point[i], &s->point[i + 1])) : 0;
+    return doubt * fmax(before, after);
 }
 
 /* ---- near ways ---- */
@@ -85,7 +86,7 @@ static bool is_near(const lift_task *t, int64_t from, int64_t to) {
         !(fmin(a->normal.z, b->normal.z) > 1 - 0.5 * level * level))
         return false;
     return vec3_dot(chord, chord) <= most * most &&
-           fabs(sample_rise(a, b)) <= 0.5 * t->options->tolerance &&
+           fabs(chart_rise(a, b)) <= 0.5 * t->options->tolerance &&
            vec3_dot(a->normal, b->normal) > 0.5;
 }
 
