@@ -111,6 +111,11 @@ static iso_status warn(work *w) {
                                 "on %d towers a level leaves the surface before it is around, and "
                                 "has no channel",
                                 f->incomplete));
+    if (f->narrow > 0)
+        ISO_TRY(iso_report_warn(&w->report, "channel-narrow",
+                                "on %d tops the last ring would be too narrow to bend, and is left "
+                                "out",
+                                f->narrow));
     if (f->folds > 0)
         ISO_TRY(iso_report_warn(&w->report, "channel-folds",
                                 "at %d places channels are cut short, for the part bends more "

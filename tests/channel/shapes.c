@@ -95,3 +95,103 @@ void box_mesh(iso_mesh *mesh, iso_vec3 low, iso_vec3 high) {
     }
     take(mesh, triangle, 12);
 }
+
+/* Vertical walls of a ring of points, counter-clockwise seen from above. */
+static float *put_walls(float *at, const double (*ring)[2], int count, double low, double high) {
+    for (int i = 0; i < count; i++) {
+        const double *p = ring[i], *q = ring[(i + 1) % count];
+        iso_vec3 a = {p[0], p[1], low}, b = {q[0], q[1], low};
+        iso_vec3 c = {q[0], q[1], high}, d = {p[0], p[1], high};
+        at = put(at, a, b, c);
+        at = put(at, a, c, d);
+    }
+    return at;
+}
+
+static float *put_flat(float *at, const double p[2], const double q[2], const double r[2], double z,
+                       int upwards) {
+    iso_vec3 a = {p[0], p[1], z}, b = {q[0], q[1], z}, c = {r[0], r[1], z};
+    return upwards ? put(at, a, b, c) : put(at, a, c, b);
+}
+
+/* The plate's top is cut into columns between the boxes' edges, which must not overlap in x; all
+ * boxes have the same edges in y. */
+void plate_mesh(iso_mesh *mesh, const double (*low)[3], const double (*high)[3], int count) {
+    float *triangle = malloc(4096 * sizeof *triangle), *at = triangle;
+    double x[16], y[4] = {low[0][1], low[1][1], high[1][1], high[0][1]}, top = high[0][2];
+    int columns = 0;
+    if (!triangle)
+        exit(1);
+    x[columns++] = low[0][0];
+    for (int i = 1; i < count; i++) {
+        x[columns++] = low[i][0];
+        x[columns++] = high[i][0];
+    }
+    x[columns] = high[0][0];
+    for (int i = 0; i < columns; i++)
+        for (int j = 0; j < 3; j++) {
+            double p[4][2] = {
+                {x[i], y[j]}, {x[i + 1], y[j]}, {x[i + 1], y[j + 1]}, {x[i], y[j + 1]}};
+            int post = j == 1 && i % 2 == 1;
+            double z = post ? high[(i + 1) / 2][2] : top;
+            for (int up = 0; up < 2; up++) {
+                at = put_flat(at, p[0], p[1], p[2], up ? z : low[0][2], up);
+                at = put_flat(at, p[0], p[2], p[3], up ? z : low[0][2], up);
+            }
+            if (post)
+                at = put_walls(at, (const double(*)[2])p, 4, top, z);
+        }
+    double ring[64][2];
+    int n = 0;
+    for (int i = 0; i <= columns; i++)
+        ring[n][0] = x[i], ring[n++][1] = y[0];
+    for (int j = 1; j < 3; j++)
+        ring[n][0] = x[columns], ring[n++][1] = y[j];
+    for (int i = columns; i >= 0; i--)
+        ring[n][0] = x[i], ring[n++][1] = y[3];
+    for (int j = 2; j > 0; j--)
+        ring[n][0] = x[0], ring[n++][1] = y[j];
+    at = put_walls(at, (const double(*)[2])ring, n, low[0][2], top);
+    take(mesh, triangle, (at - triangle) / 9);
+}
+
+void angle_mesh(iso_mesh *mesh) {
+    static const double ring[6][2] = {{0, 0}, {70, 0}, {70, 25}, {25, 25}, {25, 70}, {0, 70}};
+    static const int lid[4][3] = {{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}};
+    float *triangle = malloc(20 * 9 * sizeof *triangle), *at = triangle;
+    if (!triangle)
+        exit(1);
+    at = put_walls(at, ring, 6, 0, 60);
+    for (int i = 0; i < 4; i++)
+        for (int up = 0; up < 2; up++)
+            at = put_flat(at, ring[lid[i][0]], ring[lid[i][1]], ring[lid[i][2]], up ? 60 : 0, up);
+    take(mesh, triangle, 20);
+}
+
+void ring_mesh(iso_mesh *mesh, double radius, const shape *hole) {
+    int64_t count = 8 * (int64_t)hole->sides;
+    float *triangle = malloc((size_t)count * 9 * sizeof *triangle), *at = triangle;
+    shape outside = *hole;
+    double by = radius / hole->radius(0);
+    if (!triangle)
+        exit(1);
+    outside.stretch_x *= by;
+    outside.stretch_y *= by;
+    for (int i = 0; i < hole->sides; i++) {
+        iso_vec3 p[2][2][2]; /* within or without, side, ring */
+        for (int k = 0; k < 8; k++)
+            p[k & 1][k >> 1 & 1][k >> 2] = shape_point(k & 1 ? &outside : hole, i + (k >> 1 & 1),
+                                                       k >> 2 ? hole->rings - 1 : 0);
+        for (int top = 0; top < 2; top++) {
+            iso_vec3 a = p[0][0][top], b = p[1][0][top], c = p[1][1][top], d = p[0][1][top];
+            at = top ? put(at, a, b, c) : put(at, a, c, b);
+            at = top ? put(at, a, c, d) : put(at, a, d, c);
+        }
+        for (int out = 0; out < 2; out++) {
+            iso_vec3 a = p[out][0][0], b = p[out][1][0], c = p[out][1][1], d = p[out][0][1];
+            at = out ? put(at, a, b, c) : put(at, a, c, b);
+            at = out ? put(at, a, c, d) : put(at, a, d, c);
+        }
+    }
+    take(mesh, triangle, count);
+}

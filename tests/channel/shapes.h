@@ -27,5 +27,11 @@ double paraboloid_way(double from, double to);
 
 /* A box, by its corners. */
 void box_mesh(iso_mesh *mesh, iso_vec3 low, iso_vec3 high);
+/* A plate, box 0, and boxes that stand on its top, apart from each other. */
+void plate_mesh(iso_mesh *mesh, const double (*low)[3], const double (*high)[3], int count);
+/* A post of so large a radius, with `hole`, of straight sides and rings, through all of it. */
+void ring_mesh(iso_mesh *mesh, double radius, const shape *hole);
+/* Two arms of 70 x 25 mm, 60 mm tall, from (0, 0). */
+void angle_mesh(iso_mesh *mesh);
 
 #endif

@@ -229,8 +229,8 @@ static void test_rings_are_iso_slices_of_the_square_link(void) {
     iso_mesh_free(&mesh);
 }
 
-/* Rings between two levels lie on the chord, a little within the sphere: their place is the one right
- * above them. */
+/* Rings between two levels lie on the chord, a little within the sphere: their place is the one
+ * right above them. */
 static void test_the_reported_error_is_the_true_one(void) {
     static const shape zone = {sphere_radius, -25, 25, 1, 1, 0, 180, 121};
     iso_channel_options options = options_of("round:4", ISO_CHANNEL_CLOSED);
@@ -283,7 +283,7 @@ static void test_no_memory(void) {
     options.samples = 40;
     shape_mesh(&mesh, &coarse);
     int64_t n = 0;
-    for (iso_status status = ISO_NO_MEMORY; status == ISO_NO_MEMORY; n += n < 100 ? 1 : 7) {
+    for (iso_status status = ISO_NO_MEMORY; status == ISO_NO_MEMORY; n += n < 60 ? 1 : 19) {
         iso_channels *channels;
         float *triangle = NULL;
         int64_t count;
@@ -300,6 +300,98 @@ static void test_no_memory(void) {
     iso_mesh_free(&mesh);
 }
 
+/* Two posts on a plate: three towers, the ways along both posts go on from the plate's. */
+static void test_towers_branch(void) {
+    static const double low[3][3] = {{-40, -20, 0}, {-35, -12, 10}, {15, -12, 10}};
+    static const double high[3][3] = {{40, 20, 10}, {-15, 12, 50}, {35, 12, 50}};
+    iso_channel_options options = options_of("round:3", ISO_CHANNEL_CLOSED);
+    iso_mesh mesh;
+    iso_channels *channels;
+    options.pitch = 12;
+    options.depth = 5;
+    plate_mesh(&mesh, low, high, 3);
+    CHECK_OK(iso_channels_new(&channels, &mesh, &options));
+    CHECK_OK(iso_channels_check(channels));
+    const iso_channel_figures *f = iso_channels_figures(channels);
+    CHECK_EQUAL(3, f->tower_count);
+    CHECK(f->ring_count > 5 && f->ring_count % 2 == 1);
+    /* the same heights on both, 12 mm apart, and as far apart as that in z, for posts are upright
+     */
+    for (int32_t i = 1, half = f->ring_count / 2; i <= half; i++) {
+        CHECK_EQUAL(f->ring[i].tower + 1, f->ring[i + half].tower);
+        CHECK_NEAR(f->ring[i].height, f->ring[i + half].height, 1e-9);
+        if (i > 1)
+            CHECK_NEAR(12, f->ring[i].z - f->ring[i - 1].z, 1e-6);
+    }
+    iso_channels_free(channels);
+    iso_mesh_free(&mesh);
+}
+
+/* The way up a box and over its top is known: rings on the side are as high as it says, those on
+ * the top as far from the edge. */
+static void test_geodesic_rings_go_over_the_top(void) {
+    iso_channel_options options = options_of("round:4", ISO_CHANNEL_CLOSED);
+    iso_mesh mesh;
+    iso_channels *channels;
+    iso_coloured_link middle;
+    options.mode = ISO_CHANNEL_GEODESIC;
+    options.pitch = 15;
+    options.depth = 6;
+    options.bend = 4;
+    box_mesh(&mesh, (iso_vec3){-30, -25, 0}, (iso_vec3){30, 25, 40});
+    CHECK_OK(iso_channels_new(&channels, &mesh, &options));
+    CHECK_OK(iso_channels_check(channels));
+    const iso_channel_figures *f = iso_channels_figures(channels);
+    CHECK_EQUAL(4, f->ring_count);
+    CHECK_OK(iso_channels_centrelines(&middle, channels));
+    for (int32_t a = 0; a < middle.link.size; a++) {
+        const double *p = middle.link.g + 3 * a;
+        int32_t k = iso_map_at(&middle.link.projection[0], a);
+        double side = fmax(fabs(p[0]) - 30, fabs(p[1]) - 25);
+        if (k < 3)
+            CHECK_NEAR(7.5 + 15 * k, p[2], 1e-6);
+        else
+            CHECK_NEAR(46, p[2], 0.01);
+        if (k < 3)
+            CHECK(side > 3 && side < 6.01);
+        else /* 12.5 mm over the edge */
+            CHECK(side < -12.49 && side > -16);
+    }
+    iso_multilink_free(&middle.link);
+    iso_channels_free(channels);
+    iso_mesh_free(&mesh);
+}
+
+/* Its contours have few points: what is dropped at the corner inside mustn't take both arms along.
+ */
+static void test_an_angle_is_followed_into_its_corner(void) {
+    iso_mesh mesh;
+    for (int mode = 0; mode < ISO_CHANNEL_MODE_COUNT; mode++) {
+        iso_channel_options options = options_of("round:4", ISO_CHANNEL_CLOSED);
+        iso_channels *channels;
+        iso_coloured_link middle;
+        double nearest = INFINITY;
+        options.mode = (iso_channel_mode)mode;
+        options.depth = 8;
+        angle_mesh(&mesh);
+        CHECK_OK(iso_channels_new(&channels, &mesh, &options));
+        CHECK_OK(iso_channels_check(channels));
+        const iso_channel_figures *f = iso_channels_figures(channels);
+        CHECK_EQUAL(3, f->ring_count); /* and over the top one that is too narrow, geodesically */
+        CHECK_EQUAL(mode == ISO_CHANNEL_GEODESIC, f->narrow);
+        CHECK(f->folds >= 3);
+        CHECK(f->to_part.thickness > 5.7);
+        CHECK_OK(iso_channels_centrelines(&middle, channels));
+        for (int32_t a = 0; a < middle.link.size; a++) /* (33, 33) is 8 mm off both arms */
+            nearest =
+                fmin(nearest, hypot(middle.link.g[3 * a] - 33, middle.link.g[3 * a + 1] - 33));
+        CHECK(nearest < 3); /* rounded by 5 mm */
+        iso_multilink_free(&middle.link);
+        iso_channels_free(channels);
+        iso_mesh_free(&mesh);
+    }
+}
+
 int main(void) {
     RUN(test_closed_rings_of_every_section);
     RUN(test_ports_on_every_side);
@@ -308,6 +400,9 @@ int main(void) {
     RUN(test_the_depth);
     RUN(test_rings_are_iso_slices_of_the_square_link);
     RUN(test_the_reported_error_is_the_true_one);
+    RUN(test_towers_branch);
+    RUN(test_geodesic_rings_go_over_the_top);
+    RUN(test_an_angle_is_followed_into_its_corner);
     RUN(test_the_same_bytes_again);
     RUN(test_no_memory);
     return check_verdict();

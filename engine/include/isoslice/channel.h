@@ -110,6 +110,7 @@ typedef struct iso_channel_figures {
     int32_t bend_channel;
     iso_channel_wall to_part, between, outside;
     int32_t folds;      /* places where the offset met itself and was cut short */
+    int32_t narrow;     /* geodesic rings around a top that were too narrow to bend: left out */
     int32_t incomplete; /* levels that leave the surface at a tower's end: no channel was made */
 } iso_channel_figures;
 

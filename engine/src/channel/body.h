@@ -18,6 +18,7 @@ typedef struct channel {
 struct iso_channels {
     iso_channel_options options;
     const iso_mesh *mesh;
+    iso_mesh fine;   /* the same with short edges, for geodesics */
     iso_arena arena; /* towers, rings, skins */
     part_space part;
     tower *tower;

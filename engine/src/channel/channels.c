@@ -1,5 +1,6 @@
 /* From a part to channels: the stages in their order. */
 #include "channel/body.h"
+#include "channel/split.h"
 #include "height/height.h"
 
 enum { LEVELS_LEAST = 81, LEVELS_MOST = 2000, SAMPLES_LEAST = 100, SAMPLES_MOST = 1000 };
@@ -302,6 +303,10 @@ static iso_status add_tower(iso_channels *c, int32_t index) {
 
 // Channels of the distance on the triangles
 
+/* Of the pitch: edges are no longer than that. Distances are exact at vertices, and between them
+ * they are taken as straight. */
+#define EDGE_SHARE 0.25
+
 /* From the lowest vertices; parts of the mesh that they have no way to are below all levels. */
 static iso_status find_distances(double *distance, double *most, const iso_mesh *mesh) {
     double low = mesh->min.z + 1e-6 * (mesh->max.z - mesh->min.z);
@@ -321,24 +326,43 @@ static iso_status find_distances(double *distance, double *most, const iso_mesh 
     return ISO_OK;
 }
 
+/* Around a top the last ring may be as narrow as can be. */
+static iso_status find_narrow(bool *narrow, const iso_channels *c, const curve *pushed) {
+    curve tried;
+    int32_t at;
+    ISO_TRY(curve_resample(&tried, pushed, c->bend / STEPS_A_BEND));
+    iso_status status = curve_relax(&tried, c->bend, c->bend / STEPS_A_BEND, 0);
+    if (status == ISO_OK)
+        *narrow = curve_least_radius(&at, &tried) < c->bend;
+    curve_free(&tried);
+    return status;
+}
+
+static iso_status add_contour(iso_channels *c, const contours *all, int32_t at, int32_t number,
+                              series *s) {
+    double f = all->level[all->at[at]];
+    ring outline;
+    curve pushed;
+    bool narrow = false;
+    ISO_TRY(ring_of_contour(&outline, all, at, &c->fine, &c->arena));
+    ISO_TRY(push_ring(&pushed, c, &outline));
+    iso_status status = all->next[at] < 0 ? find_narrow(&narrow, c, &pushed) : ISO_OK;
+    c->figures.narrow += narrow;
+    if (status == ISO_OK && !narrow)
+        status = note_ring(c, number, f, &outline);
+    if (status == ISO_OK && !narrow)
+        status = c->options.ports == ISO_CHANNEL_SERIES ? add_to_series(c, s, NULL, f, &pushed)
+                                                        : add_ring(c, &pushed);
+    curve_free(&pushed);
+    return status;
+}
+
 /* Contours on top of each other, from one that is on none or on several. */
 static iso_status add_chain(iso_channels *c, const contours *all, int32_t first, int32_t number) {
     series s = {0};
     iso_status status = ISO_OK;
-    for (int32_t at = first; at >= 0 && status == ISO_OK; at = all->next[at]) {
-        double f = all->level[all->at[at]];
-        ring outline;
-        curve pushed = {0};
-        status = ring_of_contour(&outline, all, at, c->mesh, &c->arena);
-        if (status == ISO_OK)
-            status = push_ring(&pushed, c, &outline);
-        if (status == ISO_OK)
-            status = note_ring(c, number, f, &outline);
-        if (status == ISO_OK)
-            status = c->options.ports == ISO_CHANNEL_SERIES ? add_to_series(c, &s, NULL, f, &pushed)
-                                                            : add_ring(c, &pushed);
-        curve_free(&pushed);
-    }
+    for (int32_t at = first; at >= 0 && status == ISO_OK; at = all->next[at])
+        status = add_contour(c, all, at, number, &s);
     if (status == ISO_OK && s.rings > 0)
         status = add_ported(c, &s.way);
     curve_free(&s.way);
@@ -366,8 +390,9 @@ static iso_status add_chains(iso_channels *c, const contours *all) {
 static iso_status add_geodesics(iso_channels *c) {
     contours all = {0};
     double *distance, most;
-    ISO_TRY(ISO_PUSH(distance, &c->arena, c->mesh->vertex_count));
-    ISO_TRY(find_distances(distance, &most, c->mesh));
+    ISO_TRY(mesh_split(&c->fine, c->mesh, EDGE_SHARE * c->options.pitch));
+    ISO_TRY(ISO_PUSH(distance, &c->arena, c->fine.vertex_count));
+    ISO_TRY(find_distances(distance, &most, &c->fine));
     double levels = floor((most - c->start) / c->options.pitch) + 1;
     if (!(levels >= 1))
         return ISO_OK;
@@ -375,7 +400,7 @@ static iso_status add_geodesics(iso_channels *c) {
     ISO_TRY(ISO_PUSH(all.level, &c->arena, all.level_count));
     for (int32_t k = 0; k < all.level_count; k++)
         all.level[k] = c->start + c->options.pitch * k;
-    ISO_TRY(contours_cut(&all, c->mesh, distance, &c->arena));
+    ISO_TRY(contours_cut(&all, &c->fine, distance, &c->arena));
     return add_chains(c, &all);
 }
 
@@ -491,6 +516,7 @@ void iso_channels_free(iso_channels *c) {
     iso_release(c->ring);
     iso_release(c->outline);
     part_space_free(&c->part);
+    iso_mesh_free(&c->fine);
     iso_arena_free(&c->arena);
     iso_release(c);
 }

@@ -344,6 +344,7 @@ static void write_channels(iso_json *json, const iso_report *report) {
     write_wall(json, "wall_between", &f->between);
     write_wall(json, "wall_outside", &f->outside);
     iso_json_integer(json, "folds", f->folds);
+    iso_json_integer(json, "narrow", f->narrow);
     iso_json_integer(json, "incomplete", f->incomplete);
     write_rings(json, f);
     iso_json_end(json, '}');
