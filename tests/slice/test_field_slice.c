@@ -3,141 +3,14 @@
 
 #include "base/memory.h"
 #include "models/shapes.h"
+#include "slice/brute.h"
 #include "slice/fields.h"
 #include "slice/range.h"
 
 #include <isoslice/slice.h>
 
-static iso_vec3 minus(iso_vec3 a, iso_vec3 b) {
-    return (iso_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-static iso_vec3 cross(iso_vec3 a, iso_vec3 b) {
-    return (iso_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-static double dot(iso_vec3 a, iso_vec3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-/* Half the sum of the cross products: of a flat contour, its area times its normal. */
-static iso_vec3 contour_area(const iso_curves *c, int32_t contour) {
-    iso_vec3 sum = {0, 0, 0};
-    int64_t first = c->contour_first[contour], end = c->contour_first[contour + 1];
-    for (int64_t i = first; i < end; i++) {
-        iso_vec3 p = minus(c->point[i], c->point[first]);
-        iso_vec3 q = minus(c->point[i + 1 < end ? i + 1 : first], c->point[first]);
-        iso_vec3 n = cross(p, q);
-        sum = (iso_vec3){sum.x + n.x / 2, sum.y + n.y / 2, sum.z + n.z / 2};
-    }
-    return sum;
-}
-
-static void check_structure(const iso_curves *c, int32_t levels) {
-    CHECK_EQUAL(levels, c->level_count);
-    CHECK_EQUAL(0, c->level_first[0]);
-    CHECK_EQUAL(c->contour_count, c->level_first[levels]);
-    CHECK_EQUAL(0, c->contour_first[0]);
-    CHECK_EQUAL(c->crossing_count, c->contour_first[c->contour_count]);
-    for (int32_t i = 0; i < c->contour_count; i++)
-        CHECK(c->contour_first[i + 1] >= c->contour_first[i] + 2);
-}
-
-/* Worst distance of points from their level, as far as the gradient tells. */
-static double worst_level(const iso_curves *c, const test_field *f, const double *level) {
-    double worst = 0;
-    for (int32_t l = 0; l < c->level_count; l++)
-        for (int64_t i = c->contour_first[c->level_first[l]];
-             i < c->contour_first[c->level_first[l + 1]]; i++)
-            worst = fmax(worst, fabs(test_value(f, c->point[i]) - level[l]));
-    return worst;
-}
-
-static double distance_to_triangle_plane(const iso_mesh *m, int32_t t, iso_vec3 p) {
-    iso_vec3 v[3];
-    for (int k = 0; k < 3; k++)
-        v[k] = m->position[m->origin[3 * t + k]];
-    iso_vec3 n = cross(minus(v[1], v[0]), minus(v[2], v[0]));
-    double size = sqrt(dot(n, n)), off = fabs(dot(n, minus(p, v[0]))) / size;
-    for (int k = 0; k < 3; k++) { /* outside? then far away, or past an edge by rounding alone */
-        iso_vec3 e = minus(v[(k + 1) % 3], v[k]);
-        double inside = dot(cross(n, e), minus(p, v[k])) / (size * sqrt(dot(e, e)));
-        if (inside < 0)
-            off = fmax(off, -inside);
-    }
-    return off;
-}
-
-static double worst_mesh(const iso_curves *c, const iso_mesh *m) {
-    double worst = 0;
-    int64_t step = c->crossing_count * m->triangle_count / 20000000 + 1;
-    for (int64_t i = 0; i < c->crossing_count; i += step) {
-        double best = INFINITY;
-        for (int32_t t = 0; t < m->triangle_count && best > 1e-12; t++)
-            best = fmin(best, distance_to_triangle_plane(m, t, c->point[i]));
-        worst = fmax(worst, best);
-    }
-    return worst;
-}
-
-/* ---- the part of a mesh below a level, found by brute force ---- */
-
-static iso_vec3 mix(iso_vec3 a, iso_vec3 b, double t) {
-    return (iso_vec3){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
-}
-
-/* Part of a triangle where F > r, F linear on it. */
-static double part_above(const double f[3], double r) {
-    int above = (f[0] > r) + (f[1] > r) + (f[2] > r);
-    if (above == 0 || above == 3)
-        return above / 3;
-    for (int k = 0; k < 3; k++)
-        if ((f[k] > r) == (above == 1)) { /* the one that is alone */
-            double a = f[k] - r, b = f[k] - f[(k + 1) % 3], c = f[k] - f[(k + 2) % 3];
-            double corner = a / b * (a / c);
-            return above == 1 ? corner : 1 - corner;
-        }
-    return NAN;
-}
-
-/* Sum of normals times area of all that is above r, of triangles cut in n^2: the boundary of that
- * has the same vector area (Stokes), and is what the contours are. */
-static iso_vec3 area_above(const iso_mesh *mesh, const test_field *f, double r, int n) {
-    iso_vec3 sum = {0, 0, 0};
-    double *value = malloc((size_t)(n + 1) * (size_t)(n + 1) * sizeof *value);
-    for (int32_t t = 0; t < mesh->triangle_count; t++) {
-        iso_vec3 p[3];
-        double area = 0;
-        for (int k = 0; k < 3; k++)
-            p[k] = mesh->position[mesh->origin[3 * t + k]];
-        for (int i = 0; i <= n; i++)
-            for (int j = 0; i + j <= n; j++) {
-                iso_vec3 u = minus(p[1], p[0]), v = minus(p[2], p[0]);
-                double a = (double)i / n, b = (double)j / n;
-                value[i * (n + 1) + j] =
-                    test_value(f, (iso_vec3){p[0].x + a * u.x + b * v.x, p[0].y + a * u.y + b * v.y,
-                                             p[0].z + a * u.z + b * v.z});
-            }
-        for (int i = 0; i < n; i++)
-            for (int j = 0; i + j < n; j++) {
-                const double *q = value + i * (n + 1) + j;
-                area += part_above((double[]){q[0], q[n + 1], q[1]}, r);
-                if (i + j + 1 < n)
-                    area += part_above((double[]){q[n + 1], q[n + 2], q[1]}, r);
-            }
-        iso_vec3 normal = cross(minus(p[1], p[0]), minus(p[2], p[0]));
-        double part = 0.5 * area / n / n;
-        sum = (iso_vec3){sum.x + part * normal.x, sum.y + part * normal.y, sum.z + part * normal.z};
-    }
-    free(value);
-    return sum;
-}
-
-static iso_vec3 level_area(const iso_curves *c, int32_t level) {
-    iso_vec3 sum = {0, 0, 0};
-    for (int32_t i = c->level_first[level]; i < c->level_first[level + 1]; i++) {
-        iso_vec3 a = contour_area(c, i);
-        sum = (iso_vec3){sum.x + a.x, sum.y + a.y, sum.z + a.z};
-    }
-    return sum;
+static double value_of(const void *field, iso_vec3 at) {
+    return test_value(field, at);
 }
 
 /* Everything that can be said of any slice. `fine` as area_above has it; areas agree within
@@ -149,10 +22,11 @@ static void check_slice(const iso_mesh *mesh, const test_field *f, const double 
     if (!CHECK_OK(iso_slice_field(&c, mesh, &f->field, level, count, &options)))
         return;
     check_structure(&c, count);
-    CHECK(worst_level(&c, f, level) < 1e-6);
+    CHECK(worst_level(&c, value_of, f, level) < 1e-6);
     CHECK(worst_mesh(&c, mesh) < 1e-9);
     for (int32_t l = 0; l < count; l++) {
-        iso_vec3 expected = area_above(mesh, f, level[l], fine), found = level_area(&c, l);
+        iso_vec3 expected = area_above(mesh, value_of, f, level[l], fine),
+                 found = level_area(&c, l);
         /* what is above lies on the left, seen from outside */
         CHECK_NEAR(expected.x, found.x, allowed);
         CHECK_NEAR(expected.y, found.y, allowed);
@@ -227,7 +101,7 @@ static void test_hidden_loop(void) {
             CHECK(fabs(a.z) < circle);
             CHECK_NEAR(0, hypot(a.x, a.y), 1e-9);
         }
-        CHECK(worst_level(&c, &f, level) < 1e-6);
+        CHECK(worst_level(&c, value_of, &f, level) < 1e-6);
         CHECK(worst_mesh(&c, &mesh) < 1e-9);
         for (int64_t i = 0; i + 1 < c.contour_first[1]; i++) { /* chords */
             iso_vec3 middle = mix(c.point[i], c.point[i + 1], 0.5);
@@ -282,7 +156,7 @@ static void test_plane_is_planar(void) {
                       ((size_t)s.level_count + 1) * sizeof *s.level_first));
         for (int64_t i = 0; i < s.crossing_count; i++)
             CHECK(s.point[i].x == c[k].point[i].x && s.point[i].y == c[k].point[i].y);
-        CHECK(worst_level(&c[k], &f, levels.cut) < 1e-12);
+        CHECK(worst_level(&c[k], value_of, &f, levels.cut) < 1e-12);
         iso_curves_free(&c[k]);
     }
     free(height);
@@ -304,7 +178,7 @@ static void check_convergence(int torus, const test_field *f, double level, int3
         if (!CHECK_OK(iso_slice_field(&c, &mesh, &f->field, &level, 1, &options)))
             return;
         CHECK_EQUAL(contours, c.contour_count);
-        CHECK(worst_level(&c, f, &level) < 1e-6);
+        CHECK(worst_level(&c, value_of, f, &level) < 1e-6);
         double found = 0;
         for (int32_t i = 0; i < c.contour_count; i++) {
             iso_vec3 a = contour_area(&c, i);
