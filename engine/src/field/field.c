@@ -48,14 +48,15 @@ void field_bound_set(iso_field_bound *bound, interval value, const interval grad
     };
 }
 
-/* How high the value gets in the box, or, for sign -1, how high its negative gets. Four times its
- * width at one point is more than what rounding does to it anywhere in the box.
+/* How high the value gets in the box, or, for sign -1, how high its negative gets: no rounding but
+ * that of the value at one point, whose width is left in *width.
  *
  * The mean value theorem, which holds for kinks too as long as the slopes next to them are known.
  */
-static double highest(field_value_at *value_at, const void *context, const interval box[3],
-                      const interval slope[3], double sign) {
+static double highest(double *width, field_value_at *value_at, const void *context,
+                      const interval range[6], double sign) {
     double at[3], reach = 0;
+    const interval *box = range, *slope = range + 3;
     for (int c = 0; c < 3; c++) {
         double low = sign > 0 ? slope[c].low : -slope[c].high;
         double high = sign > 0 ? slope[c].high : -slope[c].low;
@@ -65,24 +66,27 @@ static double highest(field_value_at *value_at, const void *context, const inter
             reach += 0.5 * size * most_of(-low, high);
     }
     interval value = value_at(context, (iso_vec3){at[0], at[1], at[2]});
-    if (sign < 0)
-        value = interval_negate(value);
-    double top = value.high + 4 * (value.high - value.low) + reach * (1 + 0x1p-48);
-    return top < HUGE_VAL ? top : HUGE_VAL;
+    *width = value.high - value.low;
+    return (sign > 0 ? value.high : -value.low) + reach * (1 + 0x1p-48);
 }
 
+/* Values as doubles have them may be rounded more elsewhere in the box: by no more than a few times
+ * what they are at the ones looked at, one of which is most often at its far end. */
 void field_bound_narrow(iso_field_bound *bound, field_value_at *value_at, const void *context,
                         iso_vec3 low, iso_vec3 high) {
-    interval value = {bound->low, bound->high}, box[3];
+    interval value = {bound->low, bound->high}, range[6];
     if (!interval_is_finite(value))
         return;
-    field_box(box, low, high);
-    const interval slope[3] = {{bound->gradient_low.x, bound->gradient_high.x},
-                               {bound->gradient_low.y, bound->gradient_high.y},
-                               {bound->gradient_low.z, bound->gradient_high.z}};
-    interval narrow = {-highest(value_at, context, box, slope, -1),
-                       highest(value_at, context, box, slope, 1)};
-    value = interval_both(value, narrow);
+    field_box(range, low, high);
+    range[3] = (interval){bound->gradient_low.x, bound->gradient_high.x};
+    range[4] = (interval){bound->gradient_low.y, bound->gradient_high.y};
+    range[5] = (interval){bound->gradient_low.z, bound->gradient_high.z};
+    double width[2], least = -highest(&width[0], value_at, context, range, -1);
+    double most = highest(&width[1], value_at, context, range, 1);
+    double spare = 4 * most_of(width[0], width[1]);
+    if (!(least - spare > -HUGE_VAL && most + spare < HUGE_VAL))
+        return;
+    value = interval_both(value, (interval){least - spare, most + spare});
     bound->low = value.low;
     bound->high = value.high;
 }
