@@ -17,6 +17,7 @@ static iso_channel_options options_of(const char *section, iso_channel_ports por
     CHECK_OK(iso_channel_section_parse(&options.section, section, 24));
     options.ports = ports;
     options.bend = 5;
+    options.samples = 120;
     return options;
 }
 

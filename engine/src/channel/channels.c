@@ -425,15 +425,14 @@ static iso_status add_all(iso_channels *c) {
 static double volume_of(const skin *s) {
     double six = 0;
     iso_vec3 o = s->point[0];
-    for (int32_t r = 0; r < (s->closed ? s->rows : s->rows - 1); r++) {
-        const iso_vec3 *a = s->point + (int64_t)s->sides * r;
-        const iso_vec3 *b = s->point + (int64_t)s->sides * ((r + 1) % s->rows);
+    for (int32_t r = 0; r < skin_steps(s); r++)
         for (int32_t k = 0; k < s->sides; k++) {
-            int32_t m = k + 1 < s->sides ? k + 1 : 0;
-            iso_vec3 p = vec3_minus(a[k], o), q = vec3_minus(a[m], o), u = vec3_minus(b[m], o);
-            six += vec3_dot(p, vec3_cross(q, u)) + vec3_dot(p, vec3_cross(u, vec3_minus(b[k], o)));
+            iso_vec3 c[6];
+            skin_square(c, s, r, k);
+            for (int i = 0; i < 6; i += 3)
+                six += vec3_dot(vec3_minus(c[i], o),
+                                vec3_cross(vec3_minus(c[i + 1], o), vec3_minus(c[i + 2], o)));
         }
-    }
     if (!s->closed) { /* the lid at point 0 adds nothing, that at the other end does */
         const iso_vec3 *b = s->point + (int64_t)s->sides * (s->rows - 1);
         for (int32_t k = 1; k + 1 < s->sides; k++)

@@ -21,16 +21,13 @@ static iso_status add_facing(soup *s, iso_vec3 a, iso_vec3 b, iso_vec3 c, bool i
 }
 
 static iso_status add_skin(soup *s, const skin *from, bool inwards) {
-    int32_t rows = from->closed ? from->rows : from->rows - 1;
-    for (int32_t r = 0; r < rows; r++) {
-        const iso_vec3 *a = from->point + (int64_t)from->sides * r;
-        const iso_vec3 *b = from->point + (int64_t)from->sides * ((r + 1) % from->rows);
+    for (int32_t r = 0; r < skin_steps(from); r++)
         for (int32_t k = 0; k < from->sides; k++) {
-            int32_t m = k + 1 < from->sides ? k + 1 : 0;
-            ISO_TRY(add_facing(s, a[k], a[m], b[m], inwards));
-            ISO_TRY(add_facing(s, a[k], b[m], b[k], inwards));
+            iso_vec3 c[6];
+            skin_square(c, from, r, k);
+            ISO_TRY(add_facing(s, c[0], c[1], c[2], inwards));
+            ISO_TRY(add_facing(s, c[3], c[4], c[5], inwards));
         }
-    }
     return ISO_OK;
 }
 

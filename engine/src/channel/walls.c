@@ -35,10 +35,7 @@ static iso_status plant(wall_finder *w, piece *p) {
     ISO_TRY(ISO_ALLOCATE(corner, 3 * count));
     for (int32_t r = p->first; r < p->last; r++)
         for (int32_t k = 0; k < s->sides; k++) {
-            const iso_vec3 *a = row_of(s, r), *b = row_of(s, r + 1);
-            int32_t m = k + 1 < s->sides ? k + 1 : 0;
-            iso_vec3 two[6] = {a[k], a[m], b[m], a[k], b[m], b[k]};
-            memcpy(corner + n, two, sizeof two);
+            skin_square(corner + n, s, r, k);
             n += 6;
         }
     p->min = p->max = corner[0];
@@ -57,7 +54,7 @@ static iso_status plant_all(wall_finder *w) {
     double step = PI / 4 * w->c->bend;
     for (int32_t i = 0; i < w->c->figures.channel_count; i++) {
         const skin *s = &w->c->channel[i].skin;
-        int32_t rows = s->closed ? s->rows : s->rows - 1;
+        int32_t rows = skin_steps(s);
         for (int32_t first = 0, last; first < rows; first = last) {
             last = first + 1;
             while (last < rows &&
