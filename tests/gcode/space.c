@@ -417,6 +417,49 @@ static void test_watch_sees_the_file(void) {
         iso_paths_free(&layer[i]);
 }
 
+/* Arcs of a flat layer are told chord by chord. */
+static void test_watch_sees_arcs(void) {
+    enum { COUNT = 60 };
+    iso_point at[COUNT];
+    for (int i = 0; i < COUNT; i++)
+        at[i] = (iso_point){iso_units(50 + 9 * cos(2 * pi * i / COUNT)),
+                            iso_units(50 + 9 * sin(2 * pi * i / COUNT))};
+    iso_paths layer = {0};
+    iso_bead bead = iso_bead_of(4500, 2000);
+    CHECK_OK(iso_paths_add(&layer, &(iso_path){.role = ISO_ROLE_PERIMETER, .closed = 1}, at, COUNT,
+                           bead.width, bead.area));
+    iso_arena arena = {0};
+    iso_arc *arc;
+    iso_arc_options arcs = iso_arc_defaults();
+    iso_gcode_layer_info info = {.z = 2000, .height = 2000, .paths = &layer};
+    arcs.tolerance = 1000;
+    CHECK_OK(iso_paths_find_arcs(&arc, &info.arc_count, &layer, &arcs, &arena));
+    CHECK(info.arc_count > 0);
+    info.arc = arc;
+    iso_gcode_options o = bare();
+    o.watch = watch;
+    o.watch_payload = &seen;
+    seen = (watched){.fail_at = -1};
+    iso_output *output;
+    iso_gcode_writer *writer;
+    CHECK_OK(iso_output_open(&output, SMALL_FILE));
+    CHECK_OK(iso_gcode_writer_new(&writer, output, &o));
+    CHECK_OK(iso_gcode_begin(writer));
+    CHECK_OK(iso_gcode_layer(writer, &info));
+    iso_gcode_writer_free(writer);
+    iso_output_abandon(output);
+    CHECK_EQUAL(COUNT, seen.count);
+    for (int i = 0; i < seen.count; i++) {
+        int next = (i + 1) % COUNT;
+        iso_vec3 to = {iso_mm(at[next].x), iso_mm(at[next].y), 0.2};
+        CHECK(vec3_distance(seen.move[i].to, to) < 0.001);
+        CHECK_NEAR(0.45, seen.move[i].width, 1e-12);
+        CHECK_NEAR(0.2, seen.move[i].height, 1e-12);
+    }
+    iso_arena_free(&arena);
+    iso_paths_free(&layer);
+}
+
 /* ---- machines that turn the part ---- */
 
 static pose_machine mandrel(void) {
@@ -813,6 +856,7 @@ int main(void) {
     RUN(test_unknown_ways_go_over_all);
     RUN(test_flat_layers_after_curved_ones);
     RUN(test_watch_sees_the_file);
+    RUN(test_watch_sees_arcs);
     RUN(test_inverse_time);
     RUN(test_compensated_feed);
     RUN(test_tip_stays_on_its_path);
