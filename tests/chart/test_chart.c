@@ -163,6 +163,25 @@ static void test_layers_that_fold_are_refused(void) {
     iso_field_free(sphere);
 }
 
+/* The axis of a fan may be on the part's box, but not on the part. */
+static void test_a_fan_beside_its_axis(void) {
+    iso_field *fan = field_of("fan:y,-20,0,30");
+    chart *map = chart_of(fan, CHART_FAN, 0, 30);
+    iso_vec3 at[3] = {{10, 0, 3}, {10, 1, 3}, {0, 1, 3}};
+    int32_t level_first[2] = {0, 1};
+    int64_t contour_first[2] = {0, 3};
+    iso_curves curves = {1, 1, 3, level_first, contour_first, at};
+    iso_slices slices;
+    CHECK_OK(chart_slices(&slices, map, &curves, 0));
+    iso_slices_free(&slices);
+    at[2] = vec3(-20, 1, 0.05);
+    CHECK_STATUS(ISO_OUTSIDE, chart_slices(&slices, map, &curves, 0));
+    CHECK(strstr(iso_error_message(), "x -20.000 y 1.000 z 0.050") != NULL);
+    CHECK(slices.point == NULL);
+    chart_free(map);
+    iso_field_free(fan);
+}
+
 static void test_places_without_a_layer(void) {
     iso_field *sphere = field_of("sphere:0,0,-30"), *fan = field_of("fan:y,-30,0,30");
     analytic rooted = analytic_field(ISO_FIELD_EXPRESSION, 25, 0);
@@ -421,6 +440,7 @@ int main(void) {
     RUN(test_points_of_space_come_down);
     RUN(test_kinds);
     RUN(test_layers_that_fold_are_refused);
+    RUN(test_a_fan_beside_its_axis);
     RUN(test_places_without_a_layer);
     RUN(test_searches_are_short);
     RUN(test_volume_of_a_ball_by_spheres);

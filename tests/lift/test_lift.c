@@ -311,8 +311,9 @@ static void try_travels(analytic *f, double r) {
     scatter(&flat);
     CHECK_OK(chart_new(&map, field, false, box, range));
     CHECK_OK(lift_paths(&out, &flat, map, &o, &arena));
-    double least = 100, most = 0;
+    double least = 100, most = 0, least_share = 100;
     for (int32_t p = 0; p < out.count; p++) {
+        double length = 0, lowest = 100;
         const iso_path *path = &out.path[p];
         CHECK(path->travel_count >= 2 || (path->travel_count == 1 && p > 0));
         iso_vec3 first = turn_of(&out, path->travel_first, o.z), g;
@@ -320,8 +321,11 @@ static void try_travels(analytic *f, double r) {
         if (path->travel_count > 1) {
             CHECK_NEAR(begin.x, first.x, 2e-4);
             CHECK_NEAR(begin.y, first.y, 2e-4);
-            CHECK(p == 0 || first.z > begin.z + 0.55);
+            CHECK(p == 0 || first.z > begin.z + 0.03);
         }
+        for (int32_t i = 0; i + 1 < path->travel_count; i++)
+            length += vec3_distance(turn_of(&out, path->travel_first + i, o.z),
+                                    turn_of(&out, path->travel_first + i + 1, o.z));
         iso_vec3 end = place_of(&out, path->first, o.z);
         iso_vec3 last = turn_of(&out, path->travel_first + path->travel_count - 1, o.z);
         CHECK_NEAR(end.x, last.x, 2e-4);
@@ -331,11 +335,14 @@ static void try_travels(analytic *f, double r) {
                 iso_vec3 at = vec3_between(turn_of(&out, path->travel_first + i, o.z),
                                            turn_of(&out, path->travel_first + i + 1, o.z), k / 10.);
                 double above = (field_at(field, at, &g) - r) / vec3_length(g);
-                least = fmin(least, above);
+                lowest = fmin(lowest, above);
                 most = fmax(most, above);
             }
+        least = fmin(least, lowest);
+        least_share = fmin(least_share, lowest / fmin(o.clearance, length / 4));
     }
-    CHECK(least > 0.98 * o.clearance);
+    CHECK(least > 0.04);
+    CHECK(least_share > 0.9);
     CHECK(most < 2 * o.clearance);
     printf("     travels are %.3f to %.3f mm above the layer, %d points\n", least, most,
            out.travel_count);
@@ -354,6 +361,28 @@ static void test_travels_stay_above_the_layer(void) {
     try_travels(&f, 8);
     f = analytic_field(ISO_FIELD_SPHERE, 30, 0);
     try_travels(&f, 39);
+}
+
+/* Where a flat tip stands on a slope its edge is lower than its middle, and clear all the same. */
+static void test_travels_keep_the_tip_clear(void) {
+    analytic f = analytic_field(ISO_FIELD_PLANE, 0.5, 0);
+    iso_paths flat = {0}, out = {0};
+    iso_arena arena = {0};
+    chart *map;
+    lift_options o = usual(12);
+    o.tip = 0.4;
+    scatter(&flat);
+    CHECK_OK(chart_new(&map, analytic_use(&f), false, box, range));
+    CHECK_OK(lift_paths(&out, &flat, map, &o, &arena));
+    for (int32_t i = out.path[5].travel_first; i < out.travel_count; i++) {
+        iso_vec3 at = turn_of(&out, i, o.z), g;
+        at.x -= o.tip; /* uphill */
+        CHECK(field_at(&f.base, at, &g) > 12);
+    }
+    chart_free(map);
+    iso_paths_free(&flat);
+    iso_paths_free(&out);
+    iso_arena_free(&arena);
 }
 
 /* The nozzle never goes lower than the bed, though the layer does. */
@@ -542,6 +571,7 @@ int main(void) {
     RUN(test_charts_of_machines_that_turn);
     RUN(test_a_loop_around_a_cylinder);
     RUN(test_travels_stay_above_the_layer);
+    RUN(test_travels_keep_the_tip_clear);
     RUN(test_travels_stay_above_the_bed);
     RUN(test_near_travels);
     RUN(test_ways_without_a_layer);

@@ -90,9 +90,9 @@ static bool is_round(const chart *c, const iso_vec3 box[2]) {
         iso_field_evaluate(&value, &gradient, c->field, &at, 1);
         if (c->kind != CHART_FAN && !(fabs(value - r) <= 1e-6 * (1 + r)))
             return false;
-        if (c->kind == CHART_FAN && r > 0 &&
-            !(fabs(vec3_length(gradient) * vec3_length(vec3_cross(d, c->axis)) - c->radius) <=
-              1e-6 * c->radius))
+        double away = vec3_length(vec3_cross(d, c->axis));
+        if (c->kind == CHART_FAN && away > 0.01 * c->radius &&
+            !(fabs(vec3_length(gradient) * away - c->radius) <= 1e-6 * c->radius))
             return false;
     }
     return true;

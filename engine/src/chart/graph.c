@@ -131,8 +131,7 @@ static void lift_even(chart_point *point, const chart *map, search *s, const iso
 
 static iso_status lift_block(chart_point *point, const chart *map, const iso_vec2 *flat, double r,
                              double start, int32_t count) {
-    search s;
-    s.count = 0; /* the rest is written before it is read */
+    search s = {.count = 0};
     if (map->even_above < HUGE_VAL)
         lift_even(point, map, &s, flat, r, count);
     else

@@ -42,6 +42,22 @@ static iso_status check_sphere(const chart *map, const iso_curves *curves) {
     return ISO_OK;
 }
 
+/* mm: nearer to a fan's axis its layers are too thin for anything. */
+static const double axis_free = 0.1;
+
+static iso_status check_fan(const iso_slices *slices, const iso_curves *curves) {
+    for (int64_t i = 0; i < slices->crossing_count; i++) {
+        iso_vec3 at = curves->point[i];
+        if (slices->point[i].y < axis_free)
+            return iso_fail(ISO_OUTSIDE,
+                            "at x %.3f y %.3f z %.3f mm (from the middle of the object and its "
+                            "foot) the object reaches to the axis of the fan, where all layers "
+                            "meet: move the axis away from the object",
+                            at.x, at.y, at.z);
+    }
+    return ISO_OK;
+}
+
 iso_status chart_slices(iso_slices *slices, const chart *map, const iso_curves *curves,
                         double margin) {
     *slices = (iso_slices){0};
@@ -49,6 +65,11 @@ iso_status chart_slices(iso_slices *slices, const chart *map, const iso_curves *
         ISO_TRY(graph_check(map, curves->point, curves->crossing_count));
     if (map->kind == CHART_SPHERE)
         ISO_TRY(check_sphere(map, curves));
-    return map->period > 0 ? unroll_slices(slices, map, curves, margin)
-                           : map_slices(slices, map, curves);
+    if (map->period > 0)
+        return unroll_slices(slices, map, curves, margin);
+    ISO_TRY(map_slices(slices, map, curves));
+    iso_status status = map->kind == CHART_FAN ? check_fan(slices, curves) : ISO_OK;
+    if (status != ISO_OK)
+        iso_slices_free(slices);
+    return status;
 }

@@ -13,15 +13,17 @@
 #include "chart/chart.h"
 
 typedef struct lift_options {
-    double r;              /* the field at the top of the layer: where the nozzle is */
-    double thickness;      /* of the layer, in r: what beads of the flat paths are as high as */
-    double z;              /* mm: the layer's nominal top, which z of vertices counts from */
-    double tolerance;      /* mm that a line may be off the one it stands for */
-    double turn;           /* radians: the normal turns by no more between vertices; 0: any */
-    double clearance;      /* mm above the layer, of travels */
-    double near;           /* mm: shorter travels within a layer go straight, along the beads */
-    double slope;          /* tangent: the steepest that a layer may lie; 0: any */
-    double least, most;    /* mm: thickness of a bead; 0: any */
+    double r;           /* the field at the top of the layer: where the nozzle is */
+    double thickness;   /* of the layer, in r: what beads of the flat paths are as high as */
+    double z;           /* mm: the layer's nominal top, which z of vertices counts from */
+    double tolerance;   /* mm that a line may be off the one it stands for */
+    double turn;        /* radians: the normal turns by no more between vertices; 0: any */
+    double clearance;   /* mm above the layer, of travels; of short ones less */
+    double tip;         /* mm: half the nozzle's flat tip if it doesn't tilt with the layer: uphill
+                         * it is lower than the layer, so travels are higher by that; 0: it does */
+    double near;        /* mm: shorter travels within a layer go straight, along the beads */
+    double slope;       /* tangent: the steepest that a layer may lie; 0: any */
+    double least, most; /* mm: thickness of a bead; 0: any */
     const iso_point *from; /* in the chart: where the nozzle comes from; NULL: unknown */
 } lift_options;
 

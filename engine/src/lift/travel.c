@@ -14,6 +14,9 @@ static const double wide_turn = 2;
  * that if it has a crease halfway. */
 static const double doubt = 2;
 
+/* A short way needs no large rise: this share of its length, and at least so many mm. */
+static const double steep = 0.25, least_rise = 0.05;
+
 /* A travel that is to be sampled: from where the nozzle is to the first vertex of a path. */
 typedef struct way {
     int32_t path;
@@ -123,15 +126,31 @@ static iso_status lay_ways(samples *s, const travels *t, int32_t first, int32_t 
     return ISO_OK;
 }
 
+/* Of the way from sample `i` on: from end to end. */
+static double rise_of_way(const travels *t, const samples *s, int64_t i) {
+    double length = 0, most = t->task->options->clearance;
+    for (; !sample_is_last(s, i) && steep * length < most; i++)
+        length += vec3_distance(s->point[i].at, s->point[i + 1].at);
+    return fmin(most, fmax(steep * length, least_rise));
+}
+
+static double uphill(const lift_task *t, const chart_point *on) {
+    double z = on->normal.z;
+    return t->options->tip * sqrt(fmax(0, 1 - z * z));
+}
+
 static iso_status put_ways(const travels *t, const samples *s) {
     int64_t begin = 0;
+    double rise = 0;
     ISO_TRY(grow(t->out, s->count));
     for (int64_t i = 0; i < s->count; i++) {
         int32_t owner = s->owner[i];
         iso_path *path = &t->out->path[t->ways[owner < 0 ? ~owner : owner].path];
-        double height = t->task->options->clearance + bump_at(s, i, begin);
-        if (i == begin)
+        if (i == begin) {
             path->travel_first = t->out->travel_count;
+            rise = rise_of_way(t, s, i);
+        }
+        double height = rise + uphill(t->task, &s->point[i]) + bump_at(s, i, begin);
         put(t->out, t->task, above(t->task, &s->point[i], height), &s->point[i]);
         path->travel_count = t->out->travel_count - path->travel_first;
         if (sample_is_last(s, i))
