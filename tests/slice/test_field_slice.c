@@ -112,6 +112,66 @@ static void test_hidden_loop(void) {
     iso_mesh_free(&mesh);
 }
 
+/* So small that no edge that is split for other reasons happens to meet it. */
+static void test_tiny_loops(void) {
+    iso_mesh mesh;
+    uint64_t seed = 4;
+    double level[] = {0.05};
+    make_cube(&mesh);
+    for (int i = 0; i < 40; i++) {
+        iso_curves c;
+        double x = shape_random(&seed) % 18000 / 1000.0 - 9;
+        double y = shape_random(&seed) % 18000 / 1000.0 - 9;
+        test_field f = test_round(x, y, 0, (iso_vec3){1, 1, 0});
+        if (!CHECK_OK(iso_slice_field(&c, &mesh, &f.field, level, 1, NULL)))
+            break;
+        CHECK_EQUAL(2, c.contour_count);
+        iso_curves_free(&c);
+    }
+    iso_mesh_free(&mesh);
+}
+
+/* In the middle of a slanted face, where the boxes around its three edges don't reach. */
+static void test_loop_far_from_edges(void) {
+    shape s = {0};
+    iso_mesh mesh;
+    iso_curves c;
+    test_field f = test_round(20 / 3.0, 20 / 3.0, 20 / 3.0, (iso_vec3){1, 1, 1});
+    double level[] = {2};
+    shape_tetrahedron(&s, 20);
+    make(&mesh, &s);
+    if (CHECK_OK(iso_slice_field(&c, &mesh, &f.field, level, 1, NULL))) {
+        CHECK_EQUAL(1, c.contour_count);
+        iso_vec3 a = contour_area(&c, 0);
+        CHECK_NEAR(SHAPE_PI * 4, sqrt(dot(a, a)), 2 * SHAPE_PI * 2 * 0.01);
+        CHECK_NEAR(a.x, a.y, 1e-6);
+        iso_curves_free(&c);
+    }
+    iso_mesh_free(&mesh);
+}
+
+/* A level that crosses an edge twice, with equal signs at its ends, between faces that it hides no
+ * loop on; lines need not be straight. */
+static void test_edge_crossed_twice(void) {
+    iso_mesh mesh;
+    iso_curves c;
+    test_field f = test_cone(30, 0, 0.5);
+    double level[] = {20.3};
+    int on_edge = 0;
+    make_cube(&mesh);
+    if (CHECK_OK(iso_slice_field(&c, &mesh, &f.field, level, 1, &(iso_field_slicing){0, 0.002}))) {
+        CHECK_EQUAL(1, c.contour_count);
+        for (int64_t i = 0; i < c.crossing_count; i++)
+            if (fabs(c.point[i].x - 10) < 1e-9 && fabs(c.point[i].z - 10) < 1e-9) {
+                CHECK_NEAR(sqrt(20.6 * 20.6 - 400), fabs(c.point[i].y), 1e-6);
+                on_edge++;
+            }
+        CHECK_EQUAL(2, on_edge);
+        iso_curves_free(&c);
+    }
+    iso_mesh_free(&mesh);
+}
+
 /* With all levels and kinds on 12 triangles, where everything hides. */
 static void test_cube(void) {
     test_field f[] = {
@@ -425,6 +485,9 @@ static void test_allocation_failures(void) {
 
 int main(void) {
     RUN(test_hidden_loop);
+    RUN(test_tiny_loops);
+    RUN(test_loop_far_from_edges);
+    RUN(test_edge_crossed_twice);
     RUN(test_cube);
     RUN(test_plane_is_planar);
     RUN(test_convergence);
