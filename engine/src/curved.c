@@ -192,8 +192,7 @@ lift_options curved_lift_options(const iso_curved *curved, const iso_options *op
         lift.turn = degree; /* 0.01 mm between two poses 250 mm from the pivot */
     if (!turns(options)) {
         lift.slope = series_tangent(options->field_slope * degree);
-        /* uphill the edge of the tip is this much nearer to the layer */
-        lift.clearance += options->clearance_tip / 2 * lift.slope;
+        lift.tip = options->clearance_tip / 2;
     }
     return lift;
 }

@@ -408,13 +408,19 @@ static iso_status begin_texts(iso_job *job, const iso_region *first) {
     return texts_check(&job->texts, job->report->printed_height);
 }
 
+/* Then there is no bed to draw a skirt on. */
+static bool has_mandrel(const iso_job *job) {
+    return job->options->field[0] && (job->options->kinematics == ISO_KINEMATICS_ROTARY_A ||
+                                      job->options->kinematics == ISO_KINEMATICS_ROTARY_B);
+}
+
 /* What the first layer decides, before anything is written. */
 static iso_status look_at_first_layers(iso_job *job) {
     iso_region first = {0}, all = {0};
     iso_status status = gather_first_layers(&first, job);
     if (status == ISO_OK)
         status = gather_feet(&all, job);
-    if (status == ISO_OK)
+    if (status == ISO_OK && !has_mandrel(job))
         status =
             surround_make(&job->surround, &first, &all, job->options, job->crew.hand[0].planar);
     if (status == ISO_OK)

@@ -8,7 +8,7 @@ extern const option_row option_rows_print[], option_rows_machine[], option_rows_
     option_rows_bent[], option_rows_infill[], option_rows_speeds[], option_rows_gcode[],
     option_rows_dialect[], option_rows_paths[], option_rows_objects[], option_rows_special[],
     option_rows_moved[], option_rows_shells[], option_rows_walls[], option_rows_solid[],
-    option_rows_lattice[], option_rows_lattice_part[];
+    option_rows_lattice[], option_rows_lattice_part[], option_rows_curved[];
 
 static const struct {
     const option_row *row;
@@ -19,7 +19,7 @@ static const struct {
     {option_rows_gcode, 0},        {option_rows_dialect, 1}, {option_rows_paths, 0},
     {option_rows_objects, 1},      {option_rows_special, 0}, {option_rows_moved, 1},
     {option_rows_shells, 0},       {option_rows_walls, 1},   {option_rows_lattice, 0},
-    {option_rows_lattice_part, 1}, {option_rows_solid, 1},
+    {option_rows_lattice_part, 1}, {option_rows_solid, 1},   {option_rows_curved, 1},
 };
 
 enum { TABLES = sizeof table / sizeof *table };

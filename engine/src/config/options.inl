@@ -201,7 +201,7 @@ ISO_OPTION(
 ISO_OPTION(
     field_slope, NUMBER, "40", "deg", 0, 89, "Curved layers",
     "Steepest that a layer may lie where the nozzle always points down; steeper ones are refused. Layers of auto-top keep to it.")
-ISO_OPTION(field_tolerance, NUMBER, "0.01", "mm", 0.001, 1, "Curved layers",
+ISO_OPTION(field_tolerance, NUMBER, "0.02", "mm", 0.001, 1, "Curved layers",
            "How far lines may be off the curved layer they stand for.")
 ISO_OPTION(
     check_clearance, BOOL, "1", "", 0, 1, "Curved layers",
@@ -213,13 +213,13 @@ ISO_OPTION(clearance_cone, NUMBER, "45", "deg", 1, 89, "Curved layers",
 ISO_OPTION(clearance_cone_height, NUMBER, "6", "mm", 0.1, 1000, "Curved layers",
            "Height above the tip at which the heater block begins.")
 ISO_OPTION(
-    clearance_block, POINTS, "-10x-10,10x10", "mm", -1000, 1000, "Curved layers",
-    "Two corners of the heater block around the nozzle, seen from above; empty: there is none.")
+    clearance_block, NUMBERS, "-10,-10,10,10", "mm", -1000, 1000, "Curved layers",
+    "The heater block around the nozzle, seen from above: X,Y of one corner, X,Y of the opposite one; empty: there is none.")
 ISO_OPTION(clearance_carriage_height, NUMBER, "20", "mm", 0.1, 1000, "Curved layers",
            "Height above the tip at which the carriage begins.")
 ISO_OPTION(
-    clearance_carriage, POINTS, "-30x-30,30x30", "mm", -1000, 1000, "Curved layers",
-    "Two corners of the carriage around the nozzle, seen from above; empty: there is none.")
+    clearance_carriage, NUMBERS, "-30,-30,30,30", "mm", -1000, 1000, "Curved layers",
+    "The carriage around the nozzle, as clearance_block; empty: there is none.")
 ISO_OPTION(
     clearance_gantry_height, NUMBER, "40", "mm", 0, 10000, "Curved layers",
     "Height above the tip at which the machine begins, wherever the nozzle is; 0: nothing is in the way.")

@@ -2,13 +2,13 @@
 
 #include <math.h>
 
-static void set_box(iso_vec2 *low, iso_vec2 *high, const iso_points *corners) {
+static void set_box(iso_vec2 *low, iso_vec2 *high, const iso_numbers *corners) {
+    const double *at = corners->value;
     *low = *high = (iso_vec2){0, 0};
-    if (corners->count != 2)
+    if (corners->count != 4)
         return;
-    iso_vec2 a = corners->point[0], b = corners->point[1];
-    *low = (iso_vec2){fmin(a.x, b.x), fmin(a.y, b.y)};
-    *high = (iso_vec2){fmax(a.x, b.x), fmax(a.y, b.y)};
+    *low = (iso_vec2){fmin(at[0], at[2]), fmin(at[1], at[3])};
+    *high = (iso_vec2){fmax(at[0], at[2]), fmax(at[1], at[3])};
 }
 
 static clearance_turning turning_of(int32_t kinematics) {
@@ -37,11 +37,11 @@ clearance_tool settings_of_tool(const iso_options *options) {
     return tool;
 }
 
-static iso_status check_box(const char *key, const iso_points *corners) {
-    if (corners->count == 0 || corners->count == 2)
+static iso_status check_box(const char *key, const iso_numbers *corners) {
+    if (corners->count == 0 || corners->count == 4)
         return ISO_OK;
-    return iso_fail(ISO_BAD_CONFIG, "%s: %d corners; give two that are opposite, or none", key,
-                    corners->count);
+    return iso_fail(ISO_BAD_CONFIG, "%s: %d numbers; give two opposite corners as X,Y,X,Y, or none",
+                    key, corners->count);
 }
 
 static iso_status check_limits(const char *key, const iso_numbers *limits) {
