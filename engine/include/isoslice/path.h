@@ -100,4 +100,8 @@ typedef struct iso_bead {
 } iso_bead;
 ISO_API iso_bead iso_bead_of(int32_t width, int32_t height);
 
+/* How high a bead of that width and area is, units; one that is too thick for a stadium is round.
+ */
+ISO_API double iso_bead_height(double width, double area);
+
 #endif

@@ -176,6 +176,10 @@ chart_kind chart_kind_of(const chart *map) {
     return map->kind;
 }
 
+const iso_field *chart_field(const chart *map) {
+    return map->field;
+}
+
 double chart_period(const chart *map) {
     return map->period;
 }

@@ -42,6 +42,7 @@ iso_status chart_new(chart **made, const iso_field *field, bool turns, const iso
 void chart_free(chart *chart);
 
 chart_kind chart_kind_of(const chart *chart);
+const iso_field *chart_field(const chart *chart);
 
 /* mm: u and u + chart_period(chart) are the same place; 0: none is. u runs from -period / 2. */
 double chart_period(const chart *chart);

@@ -125,13 +125,6 @@ static double factor_along(const lift_task *t, int64_t i) {
     return mean * x[2];
 }
 
-/* How high a bead of that width and section is; a stadium's area is w h - (1 - pi / 4) h^2. */
-static double height_of_bead(double width, double area) {
-    const double corners = 1 - pi / 4;
-    double rest = width * width - 4 * corners * area;
-    return rest < 0 ? width : (width - sqrt(rest)) / (2 * corners);
-}
-
 static double units_between(const iso_path_vertex *a, const iso_path_vertex *b) {
     double x = (double)b->at.x - a->at.x, y = (double)b->at.y - a->at.y, z = (double)b->z - a->z;
     return sqrt(x * x + y * y + z * z);
@@ -150,7 +143,7 @@ static double put_bead(iso_path_vertex *from, const iso_path_vertex *to, double 
     if (!(length > 0))
         return factor;
     double flat = from->area, area = flat * factor / length;
-    double height = height_of_bead(from->width, flat) * thickness;
+    double height = iso_bead_height(from->width, flat) * thickness;
     from->area = to_int32(area);
     if (height > 0)
         from->width = to_int32(area / height + (1 - pi / 4) * height);

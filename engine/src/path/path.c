@@ -1,5 +1,6 @@
 #include <isoslice/path.h>
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "base/memory.h"
@@ -156,4 +157,10 @@ iso_bead iso_bead_of(int32_t width, int32_t height) {
                       .height = height,
                       .area = to_nearest(area),
                       .spacing = height == 0 ? width : to_nearest(area / h)};
+}
+
+double iso_bead_height(double width, double area) {
+    const double corners = 1 - pi / 4;
+    double rest = width * width - 4 * corners * area;
+    return rest < 0 ? width : (width - sqrt(rest)) / (2 * corners);
 }
