@@ -219,7 +219,10 @@ static bool decide(clearance_hit *hit, const clearance_tool *model) {
     CHECK_OK(tool_init(&tool, model));
     for (int i = 0; i < plan.count; i++) {
         move[i] = (exact_move){
-            plan.move[i], run_at(i), i, {TOOL_ALL, {-INFINITY, -INFINITY}, {INFINITY, INFINITY}}};
+            plan.move[i],
+            run_at(i),
+            i,
+            {TOOL_ALL, {-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}}};
         if (is_bead(&plan.move[i]))
             CHECK_OK(beads_add(&beads, &plan.move[i], i));
     }
@@ -234,7 +237,10 @@ static void same_hit(bool found, const clearance_hit *a, const clearance_hit *b)
         return;
     CHECK_EQUAL(a->move, b->move);
     CHECK_EQUAL(a->bead, b->bead);
-    CHECK(a->depth == b->depth && a->place.x == b->place.x && a->tip.z == b->tip.z);
+    /* Normals were brought to length 1 for one of them. */
+    CHECK_NEAR(a->depth, b->depth, 1e-9);
+    CHECK_NEAR(a->place.x, b->place.x, 1e-9);
+    CHECK_NEAR(a->tip.z, b->tip.z, 1e-9);
     CHECK(strcmp(a->part, b->part) == 0);
 }
 
@@ -260,16 +266,47 @@ static void layers(uint64_t *state) {
             }
 }
 
-static void test_ground(void) {
-    uint64_t state = 77;
+/* Around a mandrel along x: lines along it, two layers. What is sticks out a little at times. */
+static void mandrel(uint64_t *state) {
+    double radius = between(state, 2, 5), width = 0.5;
+    scene_start(&plan, width, 0.2);
+    for (int layer = 0; layer < 2; layer++)
+        for (int i = 0; i < 40; i++) {
+            double r = radius + 0.2 * layer, angle = i * width * 0.9 / radius;
+            r += random_next(state) % 40 == 0 ? between(state, 0, 1) : 0;
+            for (int k = 0; k <= 3; k++) {
+                iso_vec3 normal = vec3(0, sin(angle), cos(angle));
+                double x = 3 * (i % 2 ? 3 - k : k), lift = k == 0 && i > 0 ? 0.4 : 0;
+                iso_vec3 at = vec3_times(normal, r + lift);
+                if (i + layer == 0 && k == 0)
+                    scene_jump(&plan, x, at.y, at.z);
+                else if (k == 0)
+                    scene_travel(&plan, x, at.y, at.z);
+                else
+                    scene_print(&plan, x, at.y, at.z);
+                if (plan.count > 0) {
+                    plan.move[plan.count - 1].from_normal = plan.normal;
+                    plan.move[plan.count - 1].to_normal = normal;
+                }
+                plan.normal = normal;
+            }
+        }
+}
+
+/* What is proven free is free, and hits are the same, in however many parts the print comes. */
+static void test_proofs(clearance_turning turning) {
+    uint64_t state = 77 + turning;
     int hits = 0, free = 0, late = 0;
-    for (int i = 0; i < 400; i++) {
-        clearance_tool tool = small_tool(&state, CLEARANCE_UPRIGHT);
+    for (int i = 0; i < (turning ? 100 : 240); i++) {
+        clearance_tool tool = small_tool(&state, turning);
         if (i % 2) {
             tool.cone_height += 1;
             tool.carriage_height += 1;
             tool.gantry_height += 1;
-            layers(&state);
+            if (turning && i % 4 == 1)
+                mandrel(&state);
+            else
+                layers(&state);
         } else {
             random_scene(&state, 3 + (int)(random_next(&state) % 30), 0.5);
         }
@@ -283,9 +320,22 @@ static void test_ground(void) {
         free += !found;
         late += found && hit.move > 20;
     }
-    CHECK(hits > 100);
-    CHECK(free > 50);
-    CHECK(late > 15);
+    CHECK(hits > (turning ? 50 : 100));
+    CHECK(free > (turning ? 12 : 50));
+    CHECK(late > 8);
+}
+
+static void test_ground(void) {
+    test_proofs(CLEARANCE_UPRIGHT);
+}
+static void test_space_about_x(void) {
+    test_proofs(CLEARANCE_ABOUT_X);
+}
+static void test_space_about_y(void) {
+    test_proofs(CLEARANCE_ABOUT_Y);
+}
+static void test_space_table(void) {
+    test_proofs(CLEARANCE_ABOUT_ALL);
 }
 
 int main(void) {
@@ -294,5 +344,8 @@ int main(void) {
     RUN(test_points_about_y);
     RUN(test_points_table);
     RUN(test_ground);
+    RUN(test_space_about_x);
+    RUN(test_space_about_y);
+    RUN(test_space_table);
     return check_verdict();
 }

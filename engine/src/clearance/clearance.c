@@ -3,19 +3,21 @@
 #include "base/memory.h"
 #include "clearance/exact.h"
 #include "clearance/ground.h"
+#include "clearance/space.h"
 
 /* Moves wait until it is known where their run of travels goes. Those close together are looked at
  * as one: all their beads are put on the ground first, which can only make more of them doubtful.
  */
 #define STEP_LENGTH 4.0 /* mm: longer pieces of the tip's way are cut */
 #define CLUSTER_EXTENT 4.0
+#define TURNING_LENGTH 2.0
+#define TURNING_ANGLE 0.05 /* radians, about */
 enum { WAITING = 512, DOUBTFUL = 1024 };
-
-static const ground_doubt everything = {TOOL_ALL, {-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
 
 struct clearance {
     tool_body tool;
-    ground_map *ground; /* NULL: the tool turns */
+    ground_map *ground; /* of an upright tool, else NULL */
+    space_map *space;   /* of one that turns, else NULL */
     bead_store beads;
     int64_t count, doubtful_total;
     bool found;
@@ -40,8 +42,9 @@ iso_status clearance_new(clearance **made, const clearance_tool *tool) {
     ISO_TRY(ISO_ALLOCATE(check, 1));
     memset(check, 0, sizeof *check);
     iso_status status = tool_init(&check->tool, tool);
-    if (status == ISO_OK && tool->turning == CLEARANCE_UPRIGHT)
-        status = ground_new(&check->ground, &check->tool);
+    if (status == ISO_OK)
+        status = tool->turning == CLEARANCE_UPRIGHT ? ground_new(&check->ground, &check->tool)
+                                                    : space_new(&check->space, &check->tool);
     if (status != ISO_OK) {
         clearance_free(check);
         return status;
@@ -54,6 +57,7 @@ void clearance_free(clearance *check) {
     if (!check)
         return;
     ground_free(check->ground);
+    space_free(check->space);
     beads_free(&check->beads);
     iso_release(check->move);
     iso_release(check->exact);
@@ -65,7 +69,8 @@ clearance_cost clearance_cost_of(const clearance *check) {
                     check->waiting_capacity * (int64_t)sizeof *check->move +
                     check->doubtful_capacity * (int64_t)sizeof *check->exact;
     return (clearance_cost){check->count, check->beads.count, check->doubtful_total,
-                            bytes + (check->ground ? ground_bytes(check->ground) : 0)};
+                            bytes + (check->ground ? ground_bytes(check->ground) : 0) +
+                                (check->space ? space_bytes(check->space) : 0)};
 }
 
 /* Decide about all that is doubtful so far. Only beads before a move count, so that it doesn't
@@ -82,11 +87,7 @@ static iso_status decide(clearance *check) {
 static iso_status doubt(clearance *check, const exact_move *move, const ground_doubt *doubt) {
     exact_move *last = check->doubtful > 0 ? &check->exact[check->doubtful - 1] : NULL;
     if (last && last->index == move->index) {
-        last->doubt.parts |= doubt->parts;
-        last->doubt.low.x = least_of(last->doubt.low.x, doubt->low.x);
-        last->doubt.low.y = least_of(last->doubt.low.y, doubt->low.y);
-        last->doubt.high.x = most_of(last->doubt.high.x, doubt->high.x);
-        last->doubt.high.y = most_of(last->doubt.high.y, doubt->high.y);
+        ground_doubt_add(&last->doubt, doubt);
         return ISO_OK;
     }
     ISO_TRY(ISO_GROW(check->exact, check->doubtful_capacity, check->doubtful + 1));
@@ -127,31 +128,61 @@ static iso_status enter_step(clearance *check, const ground_step *step) {
     return ISO_OK;
 }
 
+/* Of a section of a move of a tool that turns. */
+static iso_status enter_turning(clearance *check, const exact_move *move,
+                                const way_section *section) {
+    const clearance_move *way = &move->move;
+    double length = section->to - section->from;
+    double turn = vec3_distance(way->from_normal, way->to_normal) * length;
+    double count = 1 + (int)most_of(vec3_distance(way->from, way->to) * length / TURNING_LENGTH,
+                                    turn / TURNING_ANGLE);
+    tool_pose pose[2];
+    for (int i = 0; i <= count; i++) {
+        double t = section->from + length * i / count;
+        pose[0] = pose[1];
+        pose[1] = tool_pose_at(&check->tool, vec3_between(way->from, way->to, t),
+                               vec3_between(way->from_normal, way->to_normal, t));
+        if (i == 0)
+            continue;
+        ground_doubt left;
+        space_check(&left, check->space, pose, section->raise);
+        if (left.parts)
+            ISO_TRY(doubt(check, move, &left));
+    }
+    return ISO_OK;
+}
+
+static iso_status enter_upright(clearance *check, const clearance_move *move,
+                                const way_section *section, int32_t at) {
+    double part = section->to - section->from;
+    int count = 1 + (int)(vec3_distance(move->from, move->to) * part / STEP_LENGTH);
+    ground_step step = {.to = vec3_between(move->from, move->to, section->from),
+                        .raise = section->raise,
+                        .move = at};
+    for (int k = 1; k <= count; k++) {
+        step.from = step.to;
+        step.to = vec3_between(move->from, move->to, section->from + part * k / count);
+        ISO_TRY(enter_step(check, &step));
+    }
+    return ISO_OK;
+}
+
 static iso_status enter_move(clearance *check, int32_t at) {
     const clearance_move *move = &check->move[at].move;
-    if (is_bead(move)) {
+    if (is_bead(move))
         ISO_TRY(beads_add(&check->beads, move, check->move[at].index));
-        if (check->ground)
-            ISO_TRY(ground_add(check->ground, move));
-    }
-    if (!check->ground)
-        return doubt(check, &check->move[at], &everything);
+    if (is_bead(move) && check->ground)
+        ISO_TRY(ground_add(check->ground, move));
     way_section section[WAY_SECTIONS];
     int sections =
         way_sections(section, move, &check->move[at].run, check->tool.model.tip_diameter);
-    double length = vec3_distance(move->from, move->to);
     for (int i = 0; i < sections; i++) {
-        double from = section[i].from, part = section[i].to - from;
-        int count = 1 + (int)(length * part / STEP_LENGTH);
-        ground_step step = {
-            .to = vec3_between(move->from, move->to, from), .raise = section[i].raise, .move = at};
-        for (int k = 1; k <= count; k++) {
-            step.from = step.to;
-            step.to = vec3_between(move->from, move->to, from + part * k / count);
-            ISO_TRY(enter_step(check, &step));
-        }
+        if (check->ground)
+            ISO_TRY(enter_upright(check, move, &section[i], at));
+        else
+            ISO_TRY(enter_turning(check, &check->move[at], &section[i]));
     }
-    return ISO_OK;
+    return is_bead(move) && check->space ? space_add(check->space, move) : ISO_OK;
 }
 
 /* Look at the first `count` of the moves that wait. */

@@ -62,8 +62,8 @@ static double turns_of(const exact_search *search, const clearance_move *move) {
 /* A question: the box of a sweep, as far as there is doubt. */
 static void ask(exact_search *search, const touch_sweep *sweep, int32_t piece) {
     const ground_doubt *doubt = &search->move[search->piece[piece].move].doubt;
-    double low[3] = {doubt->low.x, doubt->low.y, -INFINITY};
-    double high[3] = {doubt->high.x, doubt->high.y, INFINITY};
+    double low[3] = {doubt->low.x, doubt->low.y, doubt->low.z};
+    double high[3] = {doubt->high.x, doubt->high.y, doubt->high.z};
     float *box = search->box + 6 * search->query_count;
     for (int k = 0; k < 3; k++) {
         iso_vec3 way = vec3(k == 0, k == 1, k == 2), back = vec3_times(way, -1);
@@ -95,6 +95,8 @@ static void enter_slabs(exact_search *search, const touch_sweep *sweep, int32_t 
 
 static iso_status make_room(exact_search *search) {
     int64_t before = search->capacity, needed = search->query_count + PARTS_MOST;
+    if (search->piece_count + TOOL_PARTS > needed)
+        needed = search->piece_count + TOOL_PARTS;
     if (needed <= before)
         return ISO_OK;
     int64_t capacity[3] = {before, 6 * before, before};

@@ -382,12 +382,9 @@ static void ask_cell(ground_question *question, const ground_cell *cell, const d
             parts |= 1 << TOOL_NOZZLE;
         if (!parts)
             continue;
-        ground_doubt *doubt = &question->doubt[i];
-        doubt->parts |= parts;
-        doubt->low.x = least_of(doubt->low.x, square[0]);
-        doubt->low.y = least_of(doubt->low.y, square[1]);
-        doubt->high.x = most_of(doubt->high.x, square[2]);
-        doubt->high.y = most_of(doubt->high.y, square[3]);
+        const ground_doubt more = {
+            parts, {square[0], square[1], -INFINITY}, {square[2], square[3], INFINITY}};
+        ground_doubt_add(&question->doubt[i], &more);
     }
 }
 
@@ -426,7 +423,7 @@ void ground_check(ground_doubt *doubt, ground_map *ground, const ground_step *st
     question.all = reach_of(step, count);
     for (int i = 0; i < count; i++) {
         question.one[i] = reach_of(step + i, 1);
-        doubt[i] = (ground_doubt){0, {INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+        doubt[i] = ground_doubt_none();
     }
     /* From the level where all there is lies in 2 x 2 squares. */
     int shift = 0;

@@ -26,11 +26,24 @@ typedef struct ground_step {
 
 enum { GROUND_STEPS = 64 };
 
-/* What is left to be decided: parts of the tool, 1 << tool_part each, over a box of x and y. */
+/* What is left to be decided: parts of the tool, 1 << tool_part each, in a box. */
 typedef struct ground_doubt {
     int parts; /* 0: the step is free */
-    iso_vec2 low, high;
+    iso_vec3 low, high;
 } ground_doubt;
+
+static inline ground_doubt ground_doubt_none(void) {
+    return (ground_doubt){0, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+static inline void ground_doubt_add(ground_doubt *doubt, const ground_doubt *more) {
+    doubt->parts |= more->parts;
+    doubt->low.x = least_of(doubt->low.x, more->low.x);
+    doubt->low.y = least_of(doubt->low.y, more->low.y);
+    doubt->low.z = least_of(doubt->low.z, more->low.z);
+    doubt->high.x = most_of(doubt->high.x, more->high.x);
+    doubt->high.y = most_of(doubt->high.y, more->high.y);
+    doubt->high.z = most_of(doubt->high.z, more->high.z);
+}
 
 /* Which of the steps, no more than GROUND_STEPS, are not proven free. They should be close
  * together. */
