@@ -448,6 +448,18 @@ static void test_blend_monotony(void) {
     iso_field_free(sharp);
 }
 
+/* Where the curved field has no value the blend has none, but a gradient all the same; the base has
+ * both. */
+static void test_blend_without_value(void) {
+    iso_field *field;
+    CHECK_OK(iso_field_blend(&field, field_of("sqrt(z - 10)"), 0, 1, 11));
+    iso_vec3 between_both = gradient_at(field, vec3(0, 0, 5));
+    CHECK(isnan(value_at(field, vec3(0, 0, 5))) && fabs(between_both.z) < HUGE_VAL);
+    CHECK(value_at(field, vec3(0, 0, 0.5)) == 0.5 && gradient_at(field, vec3(0, 0, 0.5)).z == 1);
+    CHECK_NEAR(2, value_at(field, vec3(0, 0, 14)), 1e-15);
+    iso_field_free(field);
+}
+
 static void test_blend_refuses(void) {
     iso_field *field = NULL;
     CHECK_STATUS(ISO_USAGE, iso_field_blend(&field, field_of("cone:30"), 0, 2, 2));
@@ -466,6 +478,7 @@ int main(void) {
     RUN(test_function);
     RUN(test_blend);
     RUN(test_blend_monotony);
+    RUN(test_blend_without_value);
     RUN(test_blend_refuses);
     return check_verdict();
 }

@@ -37,7 +37,7 @@ static void blend(double *value, iso_vec3 *gradient, const blend_field *f, iso_v
     *value = at.z >= f->to ? *value - f->offset : at.z + share * above;
     if (gradient && at.z < f->to) {
         *gradient = vec3_times(*gradient, share);
-        gradient->z += 1 - share + growth * above;
+        gradient->z += 1 - share + (fabs(above) < HUGE_VAL ? growth * above : 0);
     }
 }
 
