@@ -703,6 +703,43 @@ static void test_large_turns_clear_what_reaches_out(void) {
     iso_paths_free(&layer);
 }
 
+/* Around a mandrel, points 40 degrees apart: up once, at the same height all the way, down once. */
+static void test_travels_around_a_mandrel_stay_up(void) {
+    pose_machine machine = mandrel();
+    iso_paths layer = {0};
+    iso_vec3 way[6], normal[6];
+    add_coil(&layer, &machine, 12, 1, 0, 73);
+    add_coil(&layer, &machine, 12, 1, 0, 73);
+    for (int i = 0; i < 73; i++) { /* begins at 200 degrees */
+        double t = (200 + 5 * i) * pi / 180;
+        layer.frame[73 + i].normal = vec3(0, sin(t), cos(t));
+        layer.vertex[73 + i].at.y = iso_units(machine.pivot.y + 12 * sin(t));
+        layer.vertex[73 + i].z = iso_units(machine.pivot.z + 12 * cos(t) - 0.2);
+    }
+    for (int i = 0; i < 6; i++) {
+        normal[i] = vec3(0, sin(i * 40 * pi / 180), cos(i * 40 * pi / 180));
+        way[i] = vec3_along(machine.pivot, 13, normal[i]);
+        way[i].x = 20;
+    }
+    add_travel(&layer, way, normal, 6, 0.2);
+    iso_gcode_options o = bare();
+    iso_gcode_totals totals;
+    o.machine = &machine;
+    o.watch = watch;
+    o.watch_payload = &seen;
+    seen = (watched){.fail_at = -1};
+    char *text = print_layers(&totals, &o, &layer, 1, "XYZQA");
+    CHECK(strstr(text, "\nG1 Z43 F720\nG1 A400 F10800\nG1 A440\nG1 A480\nG1 A520\nG1 A560\n"
+                       "G1 Z42 F720\n"));
+    for (int i = 1; i < seen.count; i++) {
+        iso_vec3 at =
+            vec3_minus(vec3_between(seen.move[i].from, seen.move[i].to, 0.5), machine.pivot);
+        CHECK(seen.move[i].width > 0 || hypot(at.y, at.z) > 11.97);
+    }
+    free(text);
+    iso_paths_free(&layer);
+}
+
 /* A tool is changed without a retraction: where the nozzle is then is said by G94. */
 static void test_tools_change_on_machines_that_turn(void) {
     pose_machine machine = mandrel();
@@ -862,6 +899,7 @@ int main(void) {
     RUN(test_tip_stays_on_its_path);
     RUN(test_large_turns_go_around);
     RUN(test_large_turns_clear_what_reaches_out);
+    RUN(test_travels_around_a_mandrel_stay_up);
     RUN(test_tools_change_on_machines_that_turn);
     RUN(test_time_is_that_of_the_file);
     RUN(test_z_offset_is_the_machines);

@@ -361,15 +361,47 @@ static void go_around(iso_head *head, const stand *to) {
     go(head, to, &(stroke){.feed = head->travel_feed_z, .comment = "to the layer"});
 }
 
-static void travel_step(iso_head *head, const stand *to) {
+/* Point i of the way to a path, which ends where the path begins. */
+static stand way_stand(const iso_head *head, const iso_paths *paths, const iso_path *path,
+                       int32_t i, const stand *end) {
+    return i < path->travel_count ? travel_stand(head, paths, path->travel_first + i) : *end;
+}
+
+static bool is_on_mandrel(const iso_head *head) {
+    return head->machine && (head->machine->kinematics == ISO_KINEMATICS_ROTARY_A ||
+                             head->machine->kinematics == ISO_KINEMATICS_ROTARY_B);
+}
+
+/* Does the way anywhere turn a table so far that the tip had better not stay near the part? */
+static bool swings(const iso_head *head, const iso_paths *paths, const iso_path *path,
+                   const stand *end) {
     stand from = here(head);
     iso_vec3 before, after;
+    if (!head->machine || is_on_mandrel(head))
+        return false;
     tip_of(&before, head, &from);
-    tip_of(&after, head, to);
-    if (head->machine && vec3_dot(before, after) < SPACE_TURN)
-        go_around(head, to);
-    else
-        go_over(head, to, &(stroke){.feed = head->travel_feed, .comment = "travel"}, 0);
+    for (int32_t i = 0; i <= path->travel_count; i++) {
+        stand next = way_stand(head, paths, path, i, end);
+        tip_of(&after, head, &next);
+        if (vec3_dot(before, after) < SPACE_TURN)
+            return true;
+        before = after;
+    }
+    return false;
+}
+
+/* Along its points. On a mandrel the axes go straight from one to the next, however far it turns:
+ * the tip then keeps its distance from the axis, or changes it evenly. */
+static void go_along(iso_head *head, const iso_paths *paths, const iso_path *path,
+                     const stand *end) {
+    const stroke s = {.feed = head->travel_feed, .comment = "travel"};
+    for (int32_t i = 0; i <= path->travel_count; i++) {
+        stand next = way_stand(head, paths, path, i, end);
+        if (is_on_mandrel(head))
+            go(head, &next, &s);
+        else
+            go_over(head, &next, &s, 0);
+    }
 }
 
 /* How far the nozzle goes before it drips where it is seen: along the layer, without the ways up
@@ -396,15 +428,11 @@ static void travel(iso_head *head, const iso_paths *paths, const iso_path *path,
         iso_head_retract(head);
     if (away) {
         iso_modes_accelerate_travel(&head->modes, head->travel_acceleration);
-        if (!known || path->travel_count == 0 || head->above != UNKNOWN) {
+        if (!known || path->travel_count == 0 || head->above != UNKNOWN ||
+            swings(head, paths, path, to))
             go_around(head, to);
-        } else {
-            for (int32_t i = 0; i < path->travel_count; i++) {
-                stand step = travel_stand(head, paths, path->travel_first + i);
-                travel_step(head, &step);
-            }
-            travel_step(head, to);
-        }
+        else
+            go_along(head, paths, path, to);
     }
     head->above = UNKNOWN;
     head_deretract(head);
