@@ -63,6 +63,7 @@ def main():
         arrange(work)
     for script in ("tests/fill/draw_patterns.sh", "tests/path/draw_paths.sh"):
         run("sh", ROOT / script, PROGRAM, FOLDER)
+    run(sys.executable, "-B", ROOT / "docs/pictures/draw_channels.py", PROGRAM, FOLDER)
     run(sys.executable, "-B", ROOT / "docs/pictures/draw_lattices.py", PROGRAM, FOLDER,
         *sys.argv[4:])
 

@@ -125,7 +125,6 @@ static iso_status warn(work *w) {
 }
 
 static iso_status run(work *w) {
-    ISO_TRY(choose(w));
     ISO_TRY(iso_mesh_read(&w->mesh, w->arguments->file[0]));
     ISO_TRY(iso_report_add_input(&w->report, w->arguments->file[0], &w->mesh));
     ISO_TRY(iso_channels_new(&w->channels, &w->mesh, &w->options));
@@ -165,6 +164,7 @@ iso_status iso_verb_channels(const iso_arguments *arguments) {
         return iso_fail(ISO_USAGE, "say with -o where the channels go: to a file that ends in "
                                    ".stl, .mlk or .svg");
     work w = {.arguments = arguments, .path = arguments->output, .begun = clock_seconds()};
+    ISO_TRY(choose(&w));
     iso_status status = run(&w);
     iso_progress_clear(&w.line);
     w.report.seconds = clock_seconds() - w.begun;

@@ -9,15 +9,16 @@
 #include "check.h"
 #include "shapes.h"
 
-static const shape cone = {cone_radius, 0, 40, 1, 1, 0, 96, 41};
-static const shape leaning = {cone_radius, 0, 40, 1, 0.8, 0.3, 96, 41};
+static const shape cone = {cone_radius, 0, 40, 1, 1, 0, 72, 21};
+static const shape leaning = {cone_radius, 0, 40, 1, 0.8, 0.3, 72, 21};
 
 static iso_channel_options options_of(const char *section, iso_channel_ports ports) {
     iso_channel_options options = iso_channel_defaults();
     CHECK_OK(iso_channel_section_parse(&options.section, section, 24));
     options.ports = ports;
     options.bend = 5;
-    options.samples = 120;
+    options.samples = 100;
+    options.levels = 33; /* few, for speed */
     return options;
 }
 
@@ -284,7 +285,7 @@ static void test_no_memory(void) {
     options.samples = 40;
     shape_mesh(&mesh, &coarse);
     int64_t n = 0;
-    for (iso_status status = ISO_NO_MEMORY; status == ISO_NO_MEMORY; n += n < 60 ? 1 : 19) {
+    for (iso_status status = ISO_NO_MEMORY; status == ISO_NO_MEMORY; n += n < 40 ? 1 : 29) {
         iso_channels *channels;
         float *triangle = NULL;
         int64_t count;
