@@ -270,19 +270,20 @@ static void audit_all(audit *a) {
 }
 
 static double worst_layer(const audit *a) {
-    int64_t all = 0;
+    int64_t all = 0, next = 0;
     double worst = 0;
     for (int32_t k = 0; k < a->beads.layers; k++)
         all += a->layer_inside[k];
     for (int32_t k = 0; k < a->beads.layers; k++) {
-        double share = a->layer_inside[k]
-                           ? 100.0 * (double)a->layer_missing[k] / (double)a->layer_inside[k]
-                           : 0;
+        double inside = (double)a->layer_inside[k], printed = 0;
+        double gap = inside > 0 ? 100 * (double)a->layer_missing[k] / inside : 0;
+        for (; next < a->beads.count && a->beads.level[a->beads.at[next].layer] == k; next++)
+            printed += a->beads.at[next].volume;
         if (a->ask->worst != 0)
-            printf("layer %d top %.4f share %.4f missing_pct %.3f\n", k, a->beads.top[k],
-                   (double)a->layer_inside[k] / (double)all, share);
-        if ((double)a->layer_inside[k] > 0.002 * (double)all)
-            worst = fmax(worst, share);
+            printf("layer %d top %.4f part_mm3 %.3f printed_mm3 %.3f gap_pct %.3f\n", k,
+                   a->beads.top[k], inside / (double)all * a->part.volume, printed, gap);
+        if (inside > 0.002 * (double)all)
+            worst = fmax(worst, gap);
     }
     return worst;
 }
@@ -324,7 +325,8 @@ static int report(const audit *a) {
     }
     double volume = 100 * (printed / a->part.volume - 1),
            gap = (double)(a->missing - a->steps) / all;
-    double spill_gap = (double)(a->spilled - a->spilled_steps) / all, layer = worst_layer(a);
+    double spill_gap = (double)(a->spilled - a->spilled_steps) / all,
+           layer = a->field ? worst_layer(a) : 0;
     printf("layers %d\nbeads %lld\npart_mm3 %.2f\nprinted_mm3 %.2f\nvolume_pct %.3f\n",
            a->beads.layers, (long long)a->beads.count, a->part.volume, printed, volume);
     printf("lost_mm3 %.3f\nodd_beads %d\nwidest %.3f\nheights %.4f %.4f\n", a->moves.lost, odd,

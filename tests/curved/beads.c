@@ -66,14 +66,13 @@ static vec upright(vec up, vec along) {
 static void field_frame(bead *one, const beads *b, const heights *field) {
     int32_t level = b->level[one->layer];
     double below = level > 0 ? b->top[level - 1] : b->bottom, dr = b->top[level] - below;
-    if (one->height > 0) /* more is a layer that is missing */
-        dr = fmin(dr, 1.05 * one->height);
+    double told = one->height > 0 ? 1.05 * one->height : 1e30; /* more is a layer that is missing */
     vec middle = minus(mix(one->from, one->to, 0.5), b->middle);
     vec g = heights_gradient(field, middle);
     one->up = unit(g);
     one->height = dr / length(g);
     g = heights_gradient(field, minus(middle, times(one->up, one->height / 2)));
-    one->height = dr / length(g);
+    one->height = fmin(told, dr / length(g));
 }
 
 static void section(bead *one) {

@@ -32,6 +32,7 @@ static const char *const part_name[PARTS] = {"nozzle", "heater block", "carriage
 
 typedef struct tool {
     double tip, cone, cone_height, block[4], carriage_height, carriage[4], gantry;
+    double rise; /* of the cone's side, mm a mm */
 } tool;
 
 typedef struct cell {
@@ -70,9 +71,8 @@ static double into_box(vec p, double from, const double box[4]) {
 
 /* How far a point, seen from the tip, may be inside, anywhere in a ball around it. */
 static void depths(double depth[PARTS], const tool *t, vec p, double ball) {
-    double away = fmax(0, hypot(p.x, p.y) - ball - t->tip / 2);
-    depth[NOZZLE] =
-        p.z - ball > t->cone_height ? -1e9 : p.z + ball - away / tan(t->cone * PI / 180);
+    double away = fmax(0, sqrt(p.x * p.x + p.y * p.y) - ball - t->tip / 2);
+    depth[NOZZLE] = p.z - ball > t->cone_height ? -1e9 : p.z + ball - away * t->rise;
     depth[HEATER] = into_box(p, t->cone_height, t->block) + ball;
     depth[CARRIAGE] = into_box(p, t->carriage_height, t->carriage) + ball;
     depth[GANTRY] = t->gantry > 0 ? p.z - t->gantry + ball : -1e9;
@@ -174,7 +174,12 @@ static void tell(check *c, int which, const pose *at, vec point, int32_t line, d
 /* Is anything within a ball deeper than all that was found? */
 static int worth(const check *c, const pose *at, vec center, double ball) {
     double depth[PARTS];
-    depths(depth, &c->tool, turned(at->turn, minus(center, at->tip)), ball);
+    vec p = minus(center, at->tip);
+    if (c->machine.tilt >= 0)
+        p = turned(at->turn, p);
+    if (p.z + ball <= c->deepest[NOZZLE] + at->may)
+        return 0; /* nothing reaches below the tip */
+    depths(depth, &c->tool, p, ball);
     depth[NOZZLE] -= at->may;
     for (int k = 0; k < PARTS; k++)
         if (depth[k] > c->deepest[k])
@@ -297,6 +302,7 @@ int main(int count, char **word) {
         fprintf(stderr, "usage: collide PRINT.gcode PART.stl [options], see collide.c\n");
         return 2;
     }
+    c.tool.rise = 1 / tan(c.tool.cone * PI / 180);
     c.machine.pivot = (vec){pivot[0], pivot[1], pivot[2]};
     heights *field = text ? heights_new(text, base) : NULL;
     part model;
