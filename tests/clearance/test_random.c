@@ -186,13 +186,13 @@ static void check_scene(const clearance_tool *tool, int *hits, int *free) {
 static void test_points(clearance_turning turning) {
     uint64_t state = 10 + turning;
     int hits = 0, free = 0;
-    for (int i = 0; i < 44; i++) {
+    for (int i = 0; i < 30; i++) {
         clearance_tool tool = small_tool(&state, turning);
         random_scene(&state, 4 + (int)(random_next(&state) % 6), turning ? 0.5 : 0.3);
         check_scene(&tool, &hits, &free);
     }
-    CHECK(hits > 8);
-    CHECK(free > 5);
+    CHECK(hits > 4);
+    CHECK(free > 4);
 }
 
 static void test_points_upright(void) {

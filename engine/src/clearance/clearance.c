@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "clearance/exact.h"
 #include "clearance/ground.h"
-#include "clearance/space.h"
+#include "clearance/room.h"
 
 /* Moves wait until it is known where their run of travels goes. Those close together are looked at
  * as one: all their beads are put on the ground first, which can only make more of them doubtful.
@@ -17,7 +17,7 @@ enum { WAITING = 512, DOUBTFUL = 1024 };
 struct clearance {
     tool_body tool;
     ground_map *ground; /* of an upright tool, else NULL */
-    space_map *space;   /* of one that turns, else NULL */
+    room_map *room;     /* of one that turns, else NULL */
     bead_store beads;
     int64_t count, doubtful_total;
     bool found;
@@ -44,7 +44,7 @@ iso_status clearance_new(clearance **made, const clearance_tool *tool) {
     iso_status status = tool_init(&check->tool, tool);
     if (status == ISO_OK)
         status = tool->turning == CLEARANCE_UPRIGHT ? ground_new(&check->ground, &check->tool)
-                                                    : space_new(&check->space, &check->tool);
+                                                    : room_new(&check->room, &check->tool);
     if (status != ISO_OK) {
         clearance_free(check);
         return status;
@@ -57,7 +57,7 @@ void clearance_free(clearance *check) {
     if (!check)
         return;
     ground_free(check->ground);
-    space_free(check->space);
+    room_free(check->room);
     beads_free(&check->beads);
     iso_release(check->move);
     iso_release(check->exact);
@@ -70,7 +70,7 @@ clearance_cost clearance_cost_of(const clearance *check) {
                     check->doubtful_capacity * (int64_t)sizeof *check->exact;
     return (clearance_cost){check->count, check->beads.count, check->doubtful_total,
                             bytes + (check->ground ? ground_bytes(check->ground) : 0) +
-                                (check->space ? space_bytes(check->space) : 0)};
+                                (check->room ? room_bytes(check->room) : 0)};
 }
 
 /* Decide about all that is doubtful so far. Only beads before a move count, so that it doesn't
@@ -145,7 +145,7 @@ static iso_status enter_turning(clearance *check, const exact_move *move,
         if (i == 0)
             continue;
         ground_doubt left;
-        space_check(&left, check->space, pose, section->raise);
+        room_check(&left, check->room, pose, section->raise);
         if (left.parts)
             ISO_TRY(doubt(check, move, &left));
     }
@@ -182,7 +182,7 @@ static iso_status enter_move(clearance *check, int32_t at) {
         else
             ISO_TRY(enter_turning(check, &check->move[at], &section[i]));
     }
-    return is_bead(move) && check->space ? space_add(check->space, move) : ISO_OK;
+    return is_bead(move) && check->room ? room_add(check->room, move) : ISO_OK;
 }
 
 /* Look at the first `count` of the moves that wait. */

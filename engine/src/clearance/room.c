@@ -1,4 +1,4 @@
-#include "clearance/space.h"
+#include "clearance/room.h"
 
 #include "base/memory.h"
 #include "clearance/beads.h"
@@ -11,22 +11,22 @@ enum { TILE = 8, LEVELS = 9 };
 #define HALF_DIAGONAL 0.8660254037844387 /* of a cube of side 1, rounded up */
 #define ROUND 1e-3                       /* mm, more than what single precision is off */
 
-typedef struct space_cell {
+typedef struct room_cell {
     float offset;      /* of the plane, times 32767 mm, from the cell's middle */
     int16_t normal[3]; /* in 32767ths; all 0: the cell is empty */
-} space_cell;
+} room_cell;
 
 /* Cells in Morton order: cubes of 4 mm, in each cubes of 2 mm, in each cells. */
-typedef struct space_tile {
+typedef struct room_tile {
     uint64_t used; /* cubes of 2 mm with anything in them */
-    space_cell cell[TILE * TILE * TILE];
-} space_tile;
+    room_cell cell[TILE * TILE * TILE];
+} room_tile;
 
-typedef struct space_node {
+typedef struct room_node {
     int32_t child[8]; /* 0: empty; of the last level a tile, else a node */
-} space_node;
+} room_node;
 
-struct space_map {
+struct room_map {
     const tool_body *tool;
     tool_shape shape[TOOL_PARTS]; /* shrunk; the nozzle not raised */
     bool there[TOOL_PARTS];
@@ -34,55 +34,55 @@ struct space_map {
     double cosine;
     int32_t node_count, tile_count;
     int64_t node_capacity, tile_capacity;
-    space_node *node;           /* 0 is the root */
-    space_tile **tile;          /* 0 is none */
+    room_node *node;            /* 0 is the root */
+    room_tile **tile;           /* 0 is none */
     int32_t last[3], last_tile; /* the one asked for last */
 };
 
 #define BOX_MARGIN 0.02 /* mm: what pieces of long beads may be off */
 #define FAR 1e5         /* mm, beyond all there is */
 
-iso_status space_new(space_map **made, const tool_body *tool) {
-    space_map *space;
-    ISO_TRY(ISO_ALLOCATE(space, 1));
-    memset(space, 0, sizeof *space);
-    space->tool = tool;
-    space->cosine = 1 / tool->secant;
-    space->boxes_from = INFINITY;
+iso_status room_new(room_map **made, const tool_body *tool) {
+    room_map *room;
+    ISO_TRY(ISO_ALLOCATE(room, 1));
+    memset(room, 0, sizeof *room);
+    room->tool = tool;
+    room->cosine = 1 / tool->secant;
+    room->boxes_from = INFINITY;
     for (int i = 0; i < TOOL_PARTS; i++) {
-        space->there[i] = tool_shape_of(&space->shape[i], tool, (tool_part)i,
-                                        (double[]){0, CLEARANCE_TOLERANCE}, FAR);
-        if (i != TOOL_NOZZLE && space->there[i])
-            space->boxes_from = least_of(space->boxes_from, space->shape[i].low);
+        room->there[i] = tool_shape_of(&room->shape[i], tool, (tool_part)i,
+                                       (double[]){0, CLEARANCE_TOLERANCE}, FAR);
+        if (i != TOOL_NOZZLE && room->there[i])
+            room->boxes_from = least_of(room->boxes_from, room->shape[i].low);
     }
-    iso_status status = ISO_GROW(space->node, space->node_capacity, 64);
+    iso_status status = ISO_GROW(room->node, room->node_capacity, 64);
     if (status == ISO_OK)
-        status = ISO_GROW(space->tile, space->tile_capacity, 64);
+        status = ISO_GROW(room->tile, room->tile_capacity, 64);
     if (status != ISO_OK) {
-        space_free(space);
+        room_free(room);
         return status;
     }
-    space->node[0] = (space_node){{0}};
-    space->tile[0] = NULL;
-    space->node_count = space->tile_count = 1;
-    *made = space;
+    room->node[0] = (room_node){{0}};
+    room->tile[0] = NULL;
+    room->node_count = room->tile_count = 1;
+    *made = room;
     return ISO_OK;
 }
 
-void space_free(space_map *space) {
-    if (!space)
+void room_free(room_map *room) {
+    if (!room)
         return;
-    for (int32_t i = 1; i < space->tile_count; i++)
-        iso_release(space->tile[i]);
-    iso_release(space->tile);
-    iso_release(space->node);
-    iso_release(space);
+    for (int32_t i = 1; i < room->tile_count; i++)
+        iso_release(room->tile[i]);
+    iso_release(room->tile);
+    iso_release(room->node);
+    iso_release(room);
 }
 
-int64_t space_bytes(const space_map *space) {
-    return (int64_t)sizeof *space + space->node_capacity * (int64_t)sizeof(space_node) +
-           space->tile_capacity * (int64_t)sizeof(space_tile *) +
-           space->tile_count * (int64_t)sizeof(space_tile);
+int64_t room_bytes(const room_map *room) {
+    return (int64_t)sizeof *room + room->node_capacity * (int64_t)sizeof(room_node) +
+           room->tile_capacity * (int64_t)sizeof(room_tile *) +
+           room->tile_count * (int64_t)sizeof(room_tile);
 }
 
 /* ---- beads come in ---- */
@@ -92,53 +92,53 @@ static int octant(const int32_t at[3], int bit) {
     return (at[0] >> bit & 1) | (at[1] >> bit & 1) << 1 | (at[2] >> bit & 1) << 2;
 }
 
-static iso_status new_tile(int32_t *made, space_map *space) {
-    ISO_TRY(ISO_GROW(space->tile, space->tile_capacity, space->tile_count + 1));
-    space_tile *tile;
+static iso_status new_tile(int32_t *made, room_map *room) {
+    ISO_TRY(ISO_GROW(room->tile, room->tile_capacity, room->tile_count + 1));
+    room_tile *tile;
     ISO_TRY(ISO_ALLOCATE(tile, 1));
     memset(tile, 0, sizeof *tile);
-    *made = space->tile_count;
-    space->tile[space->tile_count++] = tile;
+    *made = room->tile_count;
+    room->tile[room->tile_count++] = tile;
     return ISO_OK;
 }
 
-static iso_status tile_at(space_tile **found, space_map *space, const int32_t at[3]) {
-    if (!space->last_tile || memcmp(at, space->last, sizeof space->last) != 0) {
+static iso_status tile_at(room_tile **found, room_map *room, const int32_t at[3]) {
+    if (!room->last_tile || memcmp(at, room->last, sizeof room->last) != 0) {
         int32_t node = 0;
         for (int bit = LEVELS - 1; bit >= 0; bit--) {
             int way = octant(at, bit);
-            int32_t next = space->node[node].child[way];
+            int32_t next = room->node[node].child[way];
             if (!next && bit == 0) {
-                ISO_TRY(new_tile(&next, space));
+                ISO_TRY(new_tile(&next, room));
             } else if (!next) {
-                ISO_TRY(ISO_GROW(space->node, space->node_capacity, space->node_count + 1));
-                next = space->node_count++;
-                space->node[next] = (space_node){{0}};
+                ISO_TRY(ISO_GROW(room->node, room->node_capacity, room->node_count + 1));
+                next = room->node_count++;
+                room->node[next] = (room_node){{0}};
             }
-            space->node[node].child[way] = next;
+            room->node[node].child[way] = next;
             node = next;
         }
-        memcpy(space->last, at, sizeof space->last);
-        space->last_tile = node;
+        memcpy(room->last, at, sizeof room->last);
+        room->last_tile = node;
     }
-    *found = space->tile[space->last_tile];
+    *found = room->tile[room->last_tile];
     return ISO_OK;
 }
 
 /* A bead by its two ends: discs with a ball rolled around them. */
-typedef struct space_print {
+typedef struct room_print {
     iso_vec3 center[2], normal[2];
     double disc, ball;
     int16_t across[3]; /* square to it */
     double offset;     /* of the plane with that normal */
-} space_print;
+} room_print;
 
 static iso_vec3 parts_of(const int16_t normal[3]) {
     return vec3(normal[0], normal[1], normal[2]);
 }
 
 /* How far the bead goes in a direction, times its length. */
-static double extent(const space_print *print, iso_vec3 way) {
+static double extent(const room_print *print, iso_vec3 way) {
     double most = -INFINITY, square = vec3_dot(way, way);
     for (int end = 0; end < 2; end++) {
         double along = vec3_dot(way, print->normal[end]);
@@ -148,11 +148,11 @@ static double extent(const space_print *print, iso_vec3 way) {
     return most + print->ball * sqrt(square);
 }
 
-static space_print print_of(const clearance_move *bead) {
+static room_print print_of(const clearance_move *bead) {
     double across = least_of(bead->width, bead->height);
-    space_print print = {.normal = {bead->from_normal, bead->to_normal},
-                         .disc = (bead->width - across) / 2,
-                         .ball = across / 2};
+    room_print print = {.normal = {bead->from_normal, bead->to_normal},
+                        .disc = (bead->width - across) / 2,
+                        .ball = across / 2};
     print.center[0] = vec3_along(bead->from, -print.ball, bead->from_normal);
     print.center[1] = vec3_along(bead->to, -print.ball, bead->to_normal);
     iso_vec3 normal = vec3_unit(vec3_plus(bead->from_normal, bead->to_normal));
@@ -165,7 +165,7 @@ static space_print print_of(const clearance_move *bead) {
     return print;
 }
 
-static void enter(space_cell *cell, const space_print *print, iso_vec3 middle) {
+static void enter(room_cell *cell, const room_print *print, iso_vec3 middle) {
     iso_vec3 across = parts_of(print->across), old = parts_of(cell->normal);
     double offset = print->offset - vec3_dot(across, middle);
     if (memcmp(cell->normal, print->across, sizeof cell->normal) == 0) {
@@ -190,7 +190,7 @@ static void enter(space_cell *cell, const space_print *print, iso_vec3 middle) {
 }
 
 /* The square of the distance from a place to the line between the discs. */
-static double distance_to(const space_print *print, iso_vec3 at) {
+static double distance_to(const room_print *print, iso_vec3 at) {
     iso_vec3 way = vec3_minus(print->center[1], print->center[0]);
     iso_vec3 from = vec3_minus(at, print->center[0]);
     double length = vec3_dot(way, way), along = vec3_dot(from, way);
@@ -204,14 +204,14 @@ static int32_t cell_at(double mm) {
     return (int32_t)(at < 0 ? 0 : at > most ? most : at);
 }
 
-static iso_status enter_cell(space_map *space, const space_print *print, const int32_t at[3]) {
+static iso_status enter_cell(room_map *room, const room_print *print, const int32_t at[3]) {
     iso_vec3 middle = vec3(ORIGIN + CELL * (at[0] + 0.5), ORIGIN + CELL * (at[1] + 0.5),
                            ORIGIN + CELL * (at[2] + 0.5));
     double most = print->disc + print->ball + CELL * HALF_DIAGONAL;
     if (distance_to(print, middle) > most * most)
         return ISO_OK;
-    space_tile *tile;
-    ISO_TRY(tile_at(&tile, space, (int32_t[]){at[0] / TILE, at[1] / TILE, at[2] / TILE}));
+    room_tile *tile;
+    ISO_TRY(tile_at(&tile, room, (int32_t[]){at[0] / TILE, at[1] / TILE, at[2] / TILE}));
     int cube = octant(at, 2) << 3 | octant(at, 1);
     tile->used |= (uint64_t)1 << cube;
     enter(&tile->cell[cube << 3 | octant(at, 0)], print, middle);
@@ -219,7 +219,7 @@ static iso_status enter_cell(space_map *space, const space_print *print, const i
 }
 
 /* Long beads are taken piece by piece, so that their boxes hold few cells. */
-static iso_status enter_piece(space_map *space, const space_print *print,
+static iso_status enter_piece(room_map *room, const room_print *print,
                               const clearance_move *piece) {
     double low[3], high[3];
     beads_box(low, high, piece);
@@ -229,15 +229,15 @@ static iso_status enter_piece(space_map *space, const space_print *print,
     for (at[2] = cell_at(low[2] - BOX_MARGIN); at[2] <= last[2]; at[2]++)
         for (at[1] = cell_at(low[1] - BOX_MARGIN); at[1] <= last[1]; at[1]++)
             for (at[0] = cell_at(low[0] - BOX_MARGIN); at[0] <= last[0]; at[0]++)
-                ISO_TRY(enter_cell(space, print, at));
+                ISO_TRY(enter_cell(room, print, at));
     return ISO_OK;
 }
 
 /* The bead from `t` on to `t + part`: its discs are between those at the ends, not turned evenly,
  * so that they are made a little larger. */
-static space_print piece_of(const clearance_move *bead, const clearance_move *piece, double t,
-                            double part) {
-    space_print print = print_of(piece), whole = print_of(bead);
+static room_print piece_of(const clearance_move *bead, const clearance_move *piece, double t,
+                           double part) {
+    room_print print = print_of(piece), whole = print_of(bead);
     iso_vec3 turn = vec3_minus(bead->to_normal, bead->from_normal);
     print.disc *= 1 + vec3_dot(turn, turn);
     print.center[0] = vec3_between(whole.center[0], whole.center[1], t);
@@ -246,12 +246,12 @@ static space_print piece_of(const clearance_move *bead, const clearance_move *pi
     return print;
 }
 
-iso_status space_add(space_map *space, const clearance_move *bead) {
+iso_status room_add(room_map *room, const clearance_move *bead) {
     enum { PIECE = 3 }; /* mm */
     int count = 1 + (int)(vec3_distance(bead->from, bead->to) / PIECE);
     if (count == 1) {
-        space_print print = print_of(bead);
-        return enter_piece(space, &print, bead);
+        room_print print = print_of(bead);
+        return enter_piece(room, &print, bead);
     }
     clearance_move piece = *bead;
     for (int i = 0; i < count; i++) {
@@ -260,27 +260,27 @@ iso_status space_add(space_map *space, const clearance_move *bead) {
         piece.to = vec3_between(bead->from, bead->to, end);
         piece.from_normal = vec3_unit(vec3_between(bead->from_normal, bead->to_normal, t));
         piece.to_normal = vec3_unit(vec3_between(bead->from_normal, bead->to_normal, end));
-        space_print print = piece_of(bead, &piece, t, end - t);
-        ISO_TRY(enter_piece(space, &print, &piece));
+        room_print print = piece_of(bead, &piece, t, end - t);
+        ISO_TRY(enter_piece(room, &print, &piece));
     }
     return ISO_OK;
 }
 
 /* ---- questions ---- */
 
-typedef struct space_question {
-    const space_map *space;
+typedef struct room_question {
+    const room_map *room;
     const tool_pose *pose;
     ground_doubt *doubt;
     tool_shape nozzle;        /* raised */
     double lowest;            /* height of anything of the tool */
     iso_vec3 tip, x, y, axis; /* halfway */
     double way, turn;         /* half of how far the tip goes and of how much the tool turns */
-} space_question;
+} room_question;
 
 /* Parts that a ball may meet, anywhere on the way: for each, halfspaces that the part lies in. */
-static int parts_near(const space_question *question, iso_vec3 middle, double ball) {
-    const space_map *space = question->space;
+static int parts_near(const room_question *question, iso_vec3 middle, double ball) {
+    const room_map *room = question->room;
     iso_vec3 from = vec3_minus(middle, question->tip);
     double square = vec3_dot(from, from), height = vec3_dot(from, question->axis);
     double around = ball + question->way;
@@ -289,19 +289,19 @@ static int parts_near(const space_question *question, iso_vec3 middle, double ba
     if (height + around < question->lowest)
         return 0;
     int parts = 0;
-    if (space->there[TOOL_NOZZLE] && height - around < question->nozzle.high) {
+    if (room->there[TOOL_NOZZLE] && height - around < question->nozzle.high) {
         const tool_shape *cone = &question->nozzle;
         double radius = sqrt(most_of(0, square - height * height));
-        double side = radius - cone->radius_low - (height - cone->low) * space->tool->tangent;
-        if (side * space->cosine < around)
+        double side = radius - cone->radius_low - (height - cone->low) * room->tool->tangent;
+        if (side * room->cosine < around)
             parts |= 1 << TOOL_NOZZLE;
     }
-    if (height + around < space->boxes_from)
+    if (height + around < room->boxes_from)
         return parts;
     double x = vec3_dot(from, question->x), y = vec3_dot(from, question->y);
     for (int i = TOOL_BLOCK; i < TOOL_PARTS; i++) {
-        const tool_shape *shape = &space->shape[i];
-        if (!space->there[i] || height + around < shape->low)
+        const tool_shape *shape = &room->shape[i];
+        if (!room->there[i] || height + around < shape->low)
             continue;
         if (shape->round ? square - height * height >
                                (shape->radius_low + around) * (shape->radius_low + around)
@@ -314,10 +314,10 @@ static int parts_near(const space_question *question, iso_vec3 middle, double ba
 }
 
 /* Is the part above the cell's plane in both poses, and between? */
-static bool above_cell(const space_question *question, int part, const space_cell *cell,
+static bool above_cell(const room_question *question, int part, const room_cell *cell,
                        iso_vec3 middle) {
     const tool_shape *shape =
-        part == TOOL_NOZZLE ? &question->nozzle : &question->space->shape[part];
+        part == TOOL_NOZZLE ? &question->nozzle : &question->room->shape[part];
     iso_vec3 up = parts_of(cell->normal), down = vec3_times(up, -1);
     /* Between poses points are below the line between theirs by as much. */
     double far = shape->round ? shape->radius_high + shape->radius_low
@@ -336,7 +336,7 @@ static bool above_cell(const space_question *question, int part, const space_cel
     return true;
 }
 
-static void ask_cell(space_question *question, const space_cell *cell, iso_vec3 middle) {
+static void ask_cell(room_question *question, const room_cell *cell, iso_vec3 middle) {
     int near = parts_near(question, middle, CELL * HALF_DIAGONAL), parts = 0;
     for (int i = 0; near >> i; i++)
         if ((near >> i & 1) && !above_cell(question, i, cell, middle))
@@ -357,7 +357,7 @@ static iso_vec3 middle_of(iso_vec3 middle, int octant, double side) {
                 middle.z + (octant & 4 ? side : -side) / 2);
 }
 
-static void ask_tile(space_question *question, const space_tile *tile, iso_vec3 middle) {
+static void ask_tile(room_question *question, const room_tile *tile, iso_vec3 middle) {
     for (int i = 0; i < 8; i++) {
         int used = (int)(tile->used >> (8 * i) & 255);
         iso_vec3 large = middle_of(middle, i, 4 * CELL);
@@ -367,7 +367,7 @@ static void ask_tile(space_question *question, const space_tile *tile, iso_vec3 
             iso_vec3 small = middle_of(large, k, 2 * CELL);
             if (!(used >> k & 1) || !parts_near(question, small, 2 * CELL * HALF_DIAGONAL))
                 continue;
-            const space_cell *cell = tile->cell + (i << 6 | k << 3);
+            const room_cell *cell = tile->cell + (i << 6 | k << 3);
             for (int l = 0; l < 8; l++, cell++)
                 if (cell->normal[0] || cell->normal[1] || cell->normal[2])
                     ask_cell(question, cell, middle_of(small, l, CELL));
@@ -375,31 +375,30 @@ static void ask_tile(space_question *question, const space_tile *tile, iso_vec3 
     }
 }
 
-static void ask(space_question *question, int32_t node, int level, iso_vec3 middle) {
-    const space_map *space = question->space;
+static void ask(room_question *question, int32_t node, int level, iso_vec3 middle) {
+    const room_map *room = question->room;
     double side = CELL * TILE * (1 << (level - 1));
     for (int i = 0; i < 8; i++) {
-        int32_t child = space->node[node].child[i];
+        int32_t child = room->node[node].child[i];
         iso_vec3 there = middle_of(middle, i, side);
         if (!child || !parts_near(question, there, side * HALF_DIAGONAL))
             continue;
         if (level == 1)
-            ask_tile(question, space->tile[child], there);
+            ask_tile(question, room->tile[child], there);
         else
             ask(question, child, level - 1, there);
     }
 }
 
-void space_check(ground_doubt *doubt, const space_map *space, const tool_pose pose[2],
-                 double raise) {
-    space_question question = {.space = space, .pose = pose, .doubt = doubt};
+void room_check(ground_doubt *doubt, const room_map *room, const tool_pose pose[2], double raise) {
+    room_question question = {.room = room, .pose = pose, .doubt = doubt};
     *doubt = ground_doubt_none();
-    question.nozzle = space->shape[TOOL_NOZZLE];
-    if (!tool_shape_of(&question.nozzle, space->tool, TOOL_NOZZLE,
+    question.nozzle = room->shape[TOOL_NOZZLE];
+    if (!tool_shape_of(&question.nozzle, room->tool, TOOL_NOZZLE,
                        (double[]){raise, CLEARANCE_TOLERANCE}, FAR))
         question.nozzle.high = question.nozzle.low; /* nothing is left of it, or little */
-    question.lowest = least_of(question.nozzle.low, space->boxes_from);
-    tool_pose halfway = tool_pose_at(space->tool, vec3_between(pose[0].tip, pose[1].tip, 0.5),
+    question.lowest = least_of(question.nozzle.low, room->boxes_from);
+    tool_pose halfway = tool_pose_at(room->tool, vec3_between(pose[0].tip, pose[1].tip, 0.5),
                                      vec3_plus(pose[0].axis, pose[1].axis));
     question.tip = halfway.tip;
     question.x = halfway.x;
