@@ -64,6 +64,7 @@ def main():
     for script in ("tests/fill/draw_patterns.sh", "tests/path/draw_paths.sh"):
         run("sh", ROOT / script, PROGRAM, FOLDER)
     run(sys.executable, "-B", ROOT / "docs/pictures/draw_channels.py", PROGRAM, FOLDER)
+    run(sys.executable, "-B", ROOT / "docs/pictures/draw_fields.py", PROGRAM, FOLDER)
     run(sys.executable, "-B", ROOT / "docs/pictures/draw_lattices.py", PROGRAM, FOLDER,
         *sys.argv[4:])
 

@@ -36,9 +36,9 @@ def main():
         part = pathlib.Path(folder) / "vase.stl"
         write_stl(part, vase())
         for name, field in FIELDS.items():
-            subprocess.run([PROGRAM, "contours", "-q", part, "--field", field, "--layer-heights", "1.2",
-                            "--nozzle-diameter", "2", "--field-tolerance", "0.03", "--view=-65,28", "-o",
-                            FOLDER / f"field-{name}.svg"], check=True)
+            subprocess.run([PROGRAM, "contours", "-q", part, "--field", field, "--layer-height", "1",
+                            "--first-layer-height", "1", "--nozzle-diameter", "2", "--field-tolerance", "0.03",
+                            "--view=-65,28", "-o", FOLDER / f"field-{name}.svg"], check=True)
 
 
 main()

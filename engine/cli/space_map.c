@@ -22,7 +22,7 @@ enum {
     CAPTION_SIZE = 20 /* px */
 };
 
-#define DENSE 0.4 /* px: points closer to the one before are left out */
+#define TOLERANCE 0.2 /* px: what lines may be off */
 
 typedef struct picture {
     iso_vec3 right, up, toward; /* of the eye */
@@ -144,11 +144,14 @@ static void draw_shadow(const picture *p) {
 
 /* ---- contours ---- */
 
+/* Draws lines that leave the points it is led along by TOLERANCE at most: from where it is, all
+ * directions between `right` and `left` pass all of those since. */
 typedef struct pen {
     const picture *picture;
     bool seen; /* which pieces are drawn */
-    bool down;
-    iso_vec3 last; /* where it is */
+    bool down, holds;
+    iso_vec3 last, held; /* where it is, and the last point that it was led to */
+    iso_vec3 left, right;
 } pen;
 
 static const char *pixels(char text[32], double value) {
@@ -157,15 +160,44 @@ static const char *pixels(char text[32], double value) {
     return text;
 }
 
-static void put(pen *p, iso_vec3 at, bool end) {
+static void move(pen *p, iso_vec3 at, char how) {
     char x[32], y[32];
-    double dx = at.x - p->last.x, dy = at.y - p->last.y;
-    if (p->down && !end && dx * dx + dy * dy < DENSE * DENSE)
-        return;
-    iso_output_print(p->picture->output, "%c%s %s", p->down ? 'L' : 'M', pixels(x, at.x),
-                     pixels(y, at.y));
+    iso_output_print(p->picture->output, "%c%s %s", how, pixels(x, at.x), pixels(y, at.y));
     p->down = true;
+    p->holds = false;
     p->last = at;
+}
+
+static double turn(iso_vec3 a, iso_vec3 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+static bool is_on_the_way(const pen *p, iso_vec3 at) {
+    iso_vec3 way = vec3_minus(at, p->last), before = vec3_minus(p->held, p->last);
+    return turn(p->right, way) >= 0 && turn(way, p->left) >= 0 &&
+           vec3_dot(way, before) >= vec3_dot(before, before);
+}
+
+static void lead(pen *p, iso_vec3 at) {
+    at.z = 0;
+    if (p->holds && !is_on_the_way(p, at))
+        move(p, p->held, 'L');
+    iso_vec3 way = vec3_minus(at, p->last);
+    double length = vec3_length(way);
+    if (length < TOLERANCE)
+        return;
+    iso_vec3 aside = vec3_times(vec3(-way.y, way.x, 0), TOLERANCE / length);
+    iso_vec3 left = vec3_plus(way, aside), right = vec3_minus(way, aside);
+    p->left = p->holds && turn(left, p->left) <= 0 ? p->left : left;
+    p->right = p->holds && turn(p->right, right) <= 0 ? p->right : right;
+    p->held = at;
+    p->holds = true;
+}
+
+static void lift(pen *p) {
+    if (p->holds)
+        move(p, p->held, 'L');
+    p->down = false;
 }
 
 /* From a to b, in pieces that are seen or not. */
@@ -175,28 +207,24 @@ static void draw_line(pen *p, iso_vec3 a, iso_vec3 b) {
     for (int32_t i = 0; i < count; i++) {
         iso_vec3 from = vec3_between(a, b, (double)i / count);
         iso_vec3 to = vec3_between(a, b, (double)(i + 1) / count);
-        bool wanted = is_seen(p->picture, vec3_between(from, to, 0.5)) == p->seen;
-        bool begins = wanted && !p->down;
-        if (begins)
-            put(p, from, true);
-        if (wanted && i + 1 == count)
-            put(p, to, false);
-        else if (!wanted && p->down) {
-            put(p, from, true);
-            p->down = false;
+        if (is_seen(p->picture, vec3_between(from, to, 0.5)) != p->seen) {
+            lift(p);
+            continue;
         }
+        if (!p->down)
+            move(p, vec3(from.x, from.y, 0), 'M');
+        lead(p, to);
     }
 }
 
 static void draw_contours(const picture *p, const iso_curves *curves, int32_t level, bool seen) {
     for (int32_t c = curves->level_first[level]; c < curves->level_first[level + 1]; c++) {
         int64_t first = curves->contour_first[c], end = curves->contour_first[c + 1];
-        pen line = {p, seen, false, {0, 0, 0}};
+        pen line = {.picture = p, .seen = seen};
         for (int64_t i = first; i < end; i++)
             draw_line(&line, project(p, curves->point[i]),
                       project(p, curves->point[i + 1 < end ? i + 1 : first]));
-        if (line.down) /* the last point may have been left out */
-            put(&line, project(p, curves->point[first]), true);
+        lift(&line);
     }
 }
 
