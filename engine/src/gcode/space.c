@@ -39,6 +39,11 @@ static bool is_known(const iso_head *head) {
     return head->x != UNKNOWN && head->z != UNKNOWN; /* the angles are with them */
 }
 
+static bool is_on_mandrel(const iso_head *head) {
+    return head->machine && (head->machine->kinematics == ISO_KINEMATICS_ROTARY_A ||
+                             head->machine->kinematics == ISO_KINEMATICS_ROTARY_B);
+}
+
 static bool is_same(const stand *a, const stand *b) {
     return a->x == b->x && a->y == b->y && a->z == b->z && a->angle[0] == b->angle[0] &&
            a->angle[1] == b->angle[1];
@@ -168,7 +173,7 @@ static double time_of(const iso_head *head, const stand *a, const stand *b, doub
 static char *put_fine_feed(iso_head *head, char *p, const stand *a, const stand *b, double time) {
     int inverse = head->options->rotary_feed == ISO_FEED_INVERSE_TIME;
     double feed = 60 * (inverse ? 1 : counted(a, b)) / time;
-    int64_t digits = (int64_t)larger(floor(feed * 1e4), 1);
+    int64_t digits = (int64_t)larger(floor(feed * 1e4 + 0.01), 1); /* 0.01: of roundings */
     int64_t coarse = digits >= 100000000 ? 100000 : digits >= 10000000 ? 10000 : 100;
     digits -= digits >= 100000 ? digits % coarse : 0;
     if (!inverse && digits == head->fine_feed)
@@ -227,8 +232,9 @@ static char *put_axes(const iso_head *head, char *p, const stand *from, const st
     return p;
 }
 
-/* While the part turns, X, Y and Z stay where they are if they are right within SPACE_STILL: a
- * firmware whose F counts them would else brake for a move of 1 um that is but rounding. */
+/* While a mandrel turns, X, Y and Z stay where they are if they are right within SPACE_STILL: a
+ * firmware whose F counts them would else brake for a move of some um that is but rounding. A
+ * table's move with all that turns, and would brake where they stay. */
 static stand steadied(const stand *from, const stand *to) {
     stand steady = *to;
     int32_t *axis[3] = {&steady.x, &steady.y, &steady.z};
@@ -244,7 +250,7 @@ static stand steadied(const stand *from, const stand *to) {
 /* All axes straight to where they are to stand; the E that is due goes along with a bead. */
 static void go(iso_head *head, const stand *goal, const stroke *s) {
     stand from = here(head);
-    stand steady = head->machine && is_known(head) ? steadied(&from, goal) : *goal;
+    stand steady = is_on_mandrel(head) && is_known(head) ? steadied(&from, goal) : *goal;
     const stand *to = &steady;
     bool known = is_known(head), timed = head->machine && known && !head->doubtful;
     iso_vec3 normal;
@@ -286,10 +292,12 @@ static void go(iso_head *head, const stand *goal, const stroke *s) {
     head->normal = to->normal;
 }
 
-/* Straight over the part, however it turns; `volume` is the E to leave there. */
+/* Straight over the part, however a table turns it; `volume` is the E to leave there. On a mandrel
+ * the axes go straight: the tip then keeps its distance from the axis, or changes it evenly, and
+ * that is nearer to the layer than a chord of it. */
 static void go_over(iso_head *head, const stand *to, const stroke *s, double volume) {
     stand from = here(head);
-    int32_t count = pieces(head, &from, to);
+    int32_t count = is_on_mandrel(head) ? 1 : pieces(head, &from, to);
     iso_vec3 normal, begin, end;
     if (count > 1) {
         begin = tip_of(&normal, head, &from);
@@ -367,11 +375,6 @@ static stand way_stand(const iso_head *head, const iso_paths *paths, const iso_p
     return i < path->travel_count ? travel_stand(head, paths, path->travel_first + i) : *end;
 }
 
-static bool is_on_mandrel(const iso_head *head) {
-    return head->machine && (head->machine->kinematics == ISO_KINEMATICS_ROTARY_A ||
-                             head->machine->kinematics == ISO_KINEMATICS_ROTARY_B);
-}
-
 /* Does the way anywhere turn a table so far that the tip had better not stay near the part? */
 static bool swings(const iso_head *head, const iso_paths *paths, const iso_path *path,
                    const stand *end) {
@@ -390,17 +393,12 @@ static bool swings(const iso_head *head, const iso_paths *paths, const iso_path 
     return false;
 }
 
-/* Along its points. On a mandrel the axes go straight from one to the next, however far it turns:
- * the tip then keeps its distance from the axis, or changes it evenly. */
 static void go_along(iso_head *head, const iso_paths *paths, const iso_path *path,
                      const stand *end) {
     const stroke s = {.feed = head->travel_feed, .comment = "travel"};
     for (int32_t i = 0; i <= path->travel_count; i++) {
         stand next = way_stand(head, paths, path, i, end);
-        if (is_on_mandrel(head))
-            go(head, &next, &s);
-        else
-            go_over(head, &next, &s, 0);
+        go_over(head, &next, &s, 0);
     }
 }
 
