@@ -48,6 +48,7 @@ iso_status bend_begin(iso_bend *bend, const iso_options *options, iso_gcode_opti
 }
 
 void bend_free(iso_bend *bend) {
+    iso_paths_free(&bend->part);
     iso_paths_free(&bend->lifted);
     iso_release(bend->vertex);
     iso_release(bend->travel);
@@ -86,8 +87,8 @@ iso_status bend_lift(iso_paths **made, iso_bend *bend, iso_paths *flat, const is
     bend->copy = layer->copy;
     if (!layer->curved || curved_is_flat(layer->curved))
         return stand_flat(flat, layer->height);
-    lift_options lift =
-        curved_lift_options(layer->curved, bend->options, layer->levels, layer->level);
+    lift_options lift = curved_lift_options(layer->curved, bend->options, layer->levels,
+                                            layer->level, layer->merged);
     lift.from = follows ? &layer->from : NULL;
     *made = &bend->lifted;
     return curved_lift(&bend->lifted, layer->curved, flat, &lift, scratch);

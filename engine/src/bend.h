@@ -13,7 +13,7 @@
 typedef struct iso_bend {
     bool on;
     const iso_options *options;
-    iso_paths lifted;
+    iso_paths part, lifted;
     pose_machine machine;
     iso_pose last, *vertex, *travel;
     int64_t vertex_capacity, travel_capacity;
@@ -32,6 +32,7 @@ typedef struct iso_bend_layer {
     const iso_curved *curved; /* NULL, or flat: as are its layers */
     const iso_levels *levels;
     int32_t level;
+    int32_t merged; /* it is 2^merged levels thick */
     int32_t height; /* units */
     int32_t copy;   /* -1: around */
     iso_point from; /* where the nozzle is on the copy's chart, if it is that copy's */

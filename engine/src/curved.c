@@ -12,6 +12,9 @@
 /* What bends by A over a height H has a field that rises by 1 -+ 1.5 A / H or so. */
 #define BLEND_PER_BEND 5.0
 
+/* mm: sum of two sides of a face on which more than the corners is looked at. */
+#define LARGE_FACE 6
+
 static bool turns(const iso_options *options) {
     return options->kinematics != ISO_KINEMATICS_CARTESIAN;
 }
@@ -67,6 +70,58 @@ static iso_status blend(iso_field **field, iso_report *report, const iso_options
     return status;
 }
 
+/* ---- how thick layers are ---- */
+
+/* mm: thickest bead that a layer may have without a limit of the user's. Blends bend layers of the
+ * usual height to three halves of it at most. */
+static double thickest(const iso_options *options) {
+    double nozzle = options->nozzle_diameter;
+    if (options->max_layer_height > 0)
+        return options->max_layer_height;
+    return fmax(0.75 * nozzle, fmin(nozzle, 1.5 * options->layer_height));
+}
+
+enum { PLACES_A_SIDE = 8 };
+
+/* Places of the part to look at the field's spread: corners, and points of large faces. */
+static iso_status gather_places(iso_vec3 **at, int64_t *count, const iso_object *object) {
+    int64_t capacity = 0;
+    for (int32_t i = 0; i < object->mesh_count; i++) {
+        const iso_mesh *mesh = &object->mesh[i];
+        ISO_TRY(ISO_GROW(*at, capacity, *count + mesh->vertex_count));
+        memcpy(*at + *count, mesh->position, (size_t)mesh->vertex_count * sizeof **at);
+        *count += mesh->vertex_count;
+        for (int32_t t = 0; t < mesh->triangle_count; t++) {
+            const int32_t *v = mesh->origin + 3 * (int64_t)t;
+            iso_vec3 a = mesh->position[v[0]], b = mesh->position[v[1]], c = mesh->position[v[2]];
+            if (vec3_distance(a, b) + vec3_distance(b, c) < LARGE_FACE)
+                continue;
+            ISO_TRY(ISO_GROW(*at, capacity, *count + PLACES_A_SIDE * PLACES_A_SIDE));
+            for (int j = 0; j < PLACES_A_SIDE; j++)
+                for (int k = 0; k < PLACES_A_SIDE - j; k++)
+                    (*at)[(*count)++] = vec3_along(vec3_between(a, b, (j + 0.3) / PLACES_A_SIDE),
+                                                   (k + 0.3) / PLACES_A_SIDE, vec3_minus(c, a));
+        }
+    }
+    return ISO_OK;
+}
+
+static iso_status plan_spread(iso_curved *curved, const iso_options *options,
+                              const iso_object *object) {
+    spread_options limits = {.low = curved->low,
+                             .high = curved->high,
+                             .height = options->layer_height,
+                             .least = options->min_layer_height,
+                             .most = thickest(options)};
+    iso_vec3 *at = NULL;
+    int64_t count = 0;
+    iso_status status = gather_places(&at, &count, object);
+    if (status == ISO_OK)
+        status = spread_plan(&curved->spread, curved->chart, at, count, &limits);
+    iso_release(at);
+    return status;
+}
+
 /* ---- making it ---- */
 
 static iso_status check_options(const iso_options *options) {
@@ -100,7 +155,8 @@ static iso_status make(iso_curved *curved, iso_report *report, const iso_options
     curved->low = range[0];
     curved->high = range[1];
     curved->margin = 4 + options->perimeters * options->nozzle_diameter * 2;
-    return chart_new(&curved->chart, curved->field, turns(options), box, range);
+    ISO_TRY(chart_new(&curved->chart, curved->field, turns(options), box, range));
+    return plan_spread(curved, options, object);
 }
 
 iso_status curved_new(iso_curved *curved, iso_report *report, const iso_options *options,
@@ -121,9 +177,28 @@ void curved_free(iso_curved *curved) {
 
 /* ---- levels and slices ---- */
 
+/* Steps of the usual height do: then a first layer on the bed is as the user wants it. */
+static bool are_even(const iso_curved *curved, const iso_options *options) {
+    return curved->spread.doublings == 0 && curved->spread.step > 0.9 * options->layer_height;
+}
+
+static iso_status spread_levels(iso_levels *levels, const iso_curved *curved) {
+    const spread *plan = &curved->spread;
+    double *height;
+    ISO_TRY(ISO_ALLOCATE(height, plan->count));
+    for (int32_t i = 0; i < plan->count; i++)
+        height[i] = plan->step;
+    iso_status status =
+        iso_levels_from_heights(levels, height, plan->count, (plan->count - 0.25) * plan->step);
+    iso_release(height);
+    return status;
+}
+
 iso_status curved_levels(iso_levels *levels, const iso_curved *curved, const iso_options *options) {
     double height[ISO_NUMBERS_MAX + 1], span = curved->high - curved->low;
     int32_t count = iso_options_heights(height, options), kept = 1;
+    if (!are_even(curved, options))
+        return spread_levels(levels, curved);
     if (!options->field_flat_base || turns(options)) {
         height[0] = options->layer_height;
         kept = 0;
@@ -176,13 +251,39 @@ iso_status curved_clip(iso_paths *paths, iso_paths *spare, const iso_curved *cur
     return ISO_OK;
 }
 
+/* ---- layers that merge ---- */
+
+int32_t curved_behind(const iso_curved *curved) {
+    return curved_is_flat(curved) || curved->spread.doublings == 0
+               ? 0
+               : 1 << (curved->spread.doublings - 1);
+}
+
+int32_t curved_merges(const iso_curved *curved, int32_t level) {
+    return curved_behind(curved) == 0 ? 1 : 1 + spread_most(&curved->spread, level + 1);
+}
+
+int32_t curved_source(const iso_curved *curved, int32_t level, int32_t k) {
+    return curved_behind(curved) == 0 ? level : spread_source(level + 1, k) - 1;
+}
+
+iso_status curved_part(const iso_paths **part, iso_paths *room, const iso_curved *curved,
+                       const iso_paths *paths, const int32_t level_k[2], iso_arena *scratch) {
+    *part = paths;
+    if (curved_behind(curved) == 0)
+        return ISO_OK;
+    *part = room;
+    const int32_t block[2] = {level_k[0] + 1, level_k[1]};
+    return spread_paths(room, paths, &curved->spread, block, scratch);
+}
+
 /* ---- into space ---- */
 
 lift_options curved_lift_options(const iso_curved *curved, const iso_options *options,
-                                 const iso_levels *levels, int32_t level) {
+                                 const iso_levels *levels, int32_t level, int32_t k) {
     const double degree = 3.14159265358979323846 / 180;
     lift_options lift = {.r = curved->low + levels->top[level],
-                         .thickness = levels->height[level],
+                         .thickness = levels->height[level] * (double)(1 << k),
                          .z = levels->top[level],
                          .tolerance = options->field_tolerance,
                          .near = options->retract_before_travel,

@@ -9,12 +9,14 @@
 #include <isoslice/slice.h>
 
 #include "chart/chart.h"
+#include "chart/spread.h"
 #include "lift/lift.h"
 
 /* Zero-initialise. */
 typedef struct iso_curved {
     iso_field *field; /* NULL: layers are flat */
     chart *chart;
+    spread spread;    /* whether layers merge where the field crowds them */
     double low, high; /* of the field on the object's meshes; heights of levels count from `low` */
     double margin;    /* mm that a chart which wraps shows beyond its ends */
 } iso_curved;
@@ -47,10 +49,22 @@ iso_status curved_volume(double *volume, const iso_curved *curved, const iso_sli
 iso_status curved_clip(iso_paths *paths, iso_paths *spare, const iso_curved *curved,
                        iso_arena *scratch) ISO_MUST_CHECK;
 
+/* As many layers of different thickness may end at a level: 1 unless layers merge. */
+int32_t curved_merges(const iso_curved *curved, int32_t level);
+
+/* Level whose paths the k-th of them has, from 0: at most curved_behind() levels below. */
+int32_t curved_source(const iso_curved *curved, int32_t level, int32_t k);
+int32_t curved_behind(const iso_curved *curved);
+
+/* Those of its paths, unordered, that are printed as the k-th of them; *part may be `paths`. */
+iso_status curved_part(const iso_paths **part, iso_paths *room, const iso_curved *curved,
+                       const iso_paths *paths, const int32_t level_k[2],
+                       iso_arena *scratch) ISO_MUST_CHECK;
+
 /* Ordered paths of a level into space; `from` as lift_options has it. */
 iso_status curved_lift(iso_paths *out, const iso_curved *curved, const iso_paths *flat,
                        const lift_options *options, iso_arena *scratch) ISO_MUST_CHECK;
 lift_options curved_lift_options(const iso_curved *curved, const iso_options *options,
-                                 const iso_levels *levels, int32_t level);
+                                 const iso_levels *levels, int32_t level, int32_t k);
 
 #endif

@@ -164,10 +164,17 @@ static iso_status place_piece(iso_job *job, iso_bend_layer *layer, iso_point by)
     return iso_paths_append(&job->ordered, placed, by, layer->copy);
 }
 
-/* `copy` is the number of an instance; as many as there are: what is around them. A print with one
- * tool takes the paths as they are. */
-static iso_status order_paths(iso_job *job, const iso_paths *paths, const iso_step *step,
-                              int32_t copy, int32_t tool) {
+/* Paths of a step: `copy` is the number of an instance; as many as there are: what is around them.
+ * `merged`: the layer is 2^merged levels thick. */
+typedef struct iso_turn {
+    const iso_paths *paths;
+    int32_t copy, tool, merged;
+} iso_turn;
+
+/* A print with one tool takes the paths as they are. */
+static iso_status order_paths(iso_job *job, const iso_step *step, const iso_turn *turn) {
+    const iso_paths *paths = turn->paths;
+    int32_t copy = turn->copy, tool = turn->tool;
     bool around = copy == job->plate.instances.count;
     const iso_instance *instance = &job->plate.instances.instance[around ? 0 : copy];
     const iso_stack *stack = &job->stack[instance->object];
@@ -175,6 +182,7 @@ static iso_status order_paths(iso_job *job, const iso_paths *paths, const iso_st
     iso_bend_layer layer = {.curved = around ? NULL : &stack->curved,
                             .levels = &stack->levels,
                             .level = job->next[instance->object],
+                            .merged = turn->merged,
                             .height = step->height,
                             .copy = around ? -1 : copy};
     iso_order_state *state = &job->state[tool * states(job) + copy];
@@ -206,12 +214,28 @@ static iso_status make_layers(iso_job *job, const iso_step *step) {
     return ISO_OK;
 }
 
+/* Of layers of a field several may end at one level, of different thickness (chart/spread.h). */
+static iso_status order_layer(iso_job *job, const iso_step *step, int32_t copy, int32_t tool) {
+    int32_t object = job->plate.instances.instance[copy].object, level = job->next[object];
+    const iso_stack *stack = &job->stack[object];
+    iso_arena *arena = &job->crew.hand[0].arena;
+    for (int32_t k = 0; k < curved_merges(&stack->curved, level); k++) {
+        const iso_layer *layer =
+            window_layer(&stack->window, curved_source(&stack->curved, level, k));
+        iso_turn turn = {.copy = copy, .tool = tool, .merged = k};
+        ISO_TRY(curved_part(&turn.paths, &job->bend.part, &stack->curved, &layer->paths,
+                            (int32_t[2]){level, k}, arena));
+        ISO_TRY(order_paths(job, step, &turn));
+    }
+    return ISO_OK;
+}
+
 /* What one tool prints. Copies take turns there and back again, so that the next layer begins where
  * this one ends. */
 static iso_status order_tool(iso_job *job, const iso_step *step, const iso_paths *around,
                              int32_t tool) {
     if (around)
-        ISO_TRY(order_paths(job, around, step, job->plate.instances.count, tool));
+        ISO_TRY(order_paths(job, step, &(iso_turn){around, job->plate.instances.count, tool, 0}));
     for (int32_t k = 0; k < step->count; k++) {
         int32_t i = job->steps & 1 ? step->count - 1 - k : k;
         const iso_instance *instance = &step->instance[i];
@@ -220,8 +244,7 @@ static iso_status order_tool(iso_job *job, const iso_step *step, const iso_paths
         if (!takes_part(job, step, object))
             continue;
         const iso_layer *layer = window_layer(&stack->window, index);
-        ISO_TRY(order_paths(job, &layer->paths, step,
-                            (int32_t)(instance - job->plate.instances.instance), tool));
+        ISO_TRY(order_layer(job, step, (int32_t)(instance - job->plate.instances.instance), tool));
         if (tool > 0)
             continue; /* it has been counted */
         job->report->sliced_volume += stack->level_volume

@@ -199,6 +199,8 @@ iso_status stack_slice(iso_stack *stack, iso_object *object, const iso_options *
         combine_plan(stack->combination, &stack->levels, options);
         stack->around = options->infill_every_layers - 1;
     }
+    if (curved_behind(&stack->curved) > stack->around)
+        stack->around = curved_behind(&stack->curved);
     return window_new(&stack->window, &stack->levels, &shells, stack->block, stack->around);
 }
 
