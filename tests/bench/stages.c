@@ -10,6 +10,7 @@
 #include "path/order.h"
 #include "planar/island.h"
 #include "planar/section.h"
+#include "slice/range.h"
 
 typedef struct bench_stages {
     bench_part part;
@@ -20,6 +21,10 @@ typedef struct bench_stages {
     float *triangle;
     int64_t triangle_count;
     iso_slices slices;
+    iso_field *field; /* of curved layers */
+    double *level;    /* [level_count] of it */
+    int32_t level_count;
+    iso_curves curves;
     iso_region *raw;    /* [levels] rounded, not yet clean */
     iso_region *inside; /* [levels] for the middles of the fill's lines */
     iso_paths *ordered; /* [levels] */
@@ -118,6 +123,42 @@ static void measure_slices(bench_stages *s) {
                            "arithmetic",
                            floor_slice(mesh, &s->part.levels, &s->part.slices)});
     add_row(s, (bench_row){"slice", seconds, {crossings}, "copy", floor_copy(bytes)});
+}
+
+static void slice_field(void *payload) {
+    bench_stages *s = payload;
+    bench_must(iso_slice_field(&s->curves, &s->part.mesh, s->field, s->level, s->level_count, NULL),
+               s->part.path);
+}
+
+static void free_curves(void *payload) {
+    iso_curves_free(&((bench_stages *)payload)->curves);
+}
+
+/* Cones as far apart as the flat layers are, and flat ones the way of fields. */
+static void measure_field(bench_stages *s, const char *text, const char *name) {
+    const iso_mesh *mesh = &s->part.mesh;
+    double range[2];
+    bench_must(iso_field_new(&s->field, text), text);
+    bench_must(field_range(range, s->field, mesh, 1), s->part.path);
+    double height = s->part.levels.height[s->part.levels.count - 1];
+    s->level_count = (int32_t)((range[1] - range[0]) / height);
+    s->level = bench_allocate(s->level_count * (int64_t)sizeof *s->level);
+    for (int32_t i = 0; i < s->level_count; i++)
+        s->level[i] = range[0] + height * (i + 0.5);
+    slice_field(s);
+    double crossings = (double)s->curves.crossing_count;
+    free_curves(s);
+    int64_t bytes = 24 * mesh->triangle_count + (int64_t)sizeof(iso_vec3) * mesh->vertex_count +
+                    (int64_t)sizeof(iso_vec3) * (int64_t)crossings;
+    add_row(s, (bench_row){name,
+                           bench_least(slice_field, free_curves, s),
+                           {{1e-6 * crossings, "M crossings/s"},
+                            {1e-6 * mesh->triangle_count, "M triangles/s"}},
+                           "copy",
+                           floor_copy(bytes)});
+    free(s->level);
+    iso_field_free(s->field);
 }
 
 /* ---- the kernel ---- */
@@ -347,6 +388,8 @@ void stages_measure(bench_table *table, const char *path, const iso_options *opt
     memset(s.ordered, 0, (size_t)count * sizeof *s.ordered);
     measure_mesh(&s);
     measure_slices(&s);
+    measure_field(&s, "z", "slice by field z");
+    measure_field(&s, "cone:20", "slice by a cone");
     measure_regions(&s);
     measure_fill(&s);
     measure_writing(&s);
