@@ -19,8 +19,24 @@ def cube(path):
     corner = [(x, y, z) for z in (0, SIDE) for y in (0, SIDE) for x in (0, SIDE)]
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
-    packed = [struct.pack("<12fH", 0, 0, 0, *corner[a], *corner[b], *corner[c], 0)
-              for a, b, c in triangles]
+    write(path, [[corner[i] for i in t] for t in triangles])
+
+
+def sleeve(path):
+    """Around x, from a radius of 6 mm to 9 mm, its axis 9 mm above the bed."""
+    ring = [(math.sin(math.pi * i / 48), math.cos(math.pi * i / 48)) for i in range(97)]
+    triangles = []
+    for (s, c), (t, d) in zip(ring, ring[1:]):
+        a, b = ([(x, r * p, 9 + r * q) for x, r in ((0, 9), (20, 9), (20, 6), (0, 6))]
+                for p, q in ((s, c), (t, d)))
+        for k in range(4):
+            n = (k + 1) % 4
+            triangles += [(a[k], b[n], a[n]), (a[k], b[k], b[n])]
+    write(path, triangles)
+
+
+def write(path, triangles):
+    packed = [struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles]
     path.write_bytes(bytes(80) + struct.pack("<I", len(packed)) + b"".join(packed))
 
 
@@ -43,10 +59,9 @@ class Move:
         return math.dist(*self.tips) / self.seconds
 
 
-def moves_of(text, axes):
+def moves_of(text, axes, pivot=(100, 100, 0)):
     """Moves of the axes, with where the tip is over the part before and after."""
     at, feed, top, inverse, found = dict.fromkeys("XYZABC", 0.0), 0, 0, False, []
-    pivot = (100, 100, 0)
 
     def tip():
         point = tuple(at[k] - p for k, p in zip("XYZ", pivot))
@@ -85,6 +100,7 @@ class MoreAxes(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.at = pathlib.Path(folder.name)
         cube(self.at / "cube.stl")
+        sleeve(self.at / "sleeve.stl")
 
     def printed(self, *options):
         subprocess.run([PROGRAM, "-q", "cube.stl", "-o", "x.gcode", "--field",
@@ -118,6 +134,24 @@ class MoreAxes(unittest.TestCase):
             with self.subTest(kinematics):
                 text = self.printed("--kinematics", kinematics, "--cooling=0")
                 self.check_moves(moves_of(text, tilt + "C"), tilt + "C")
+
+    def test_a_mandrel_turns_the_part_at_its_radius(self):
+        """Halfway between two places of the axes, too."""
+        subprocess.run([PROGRAM, "-q", "sleeve.stl", "-o", "x.gcode", "--field", "cylinder:x,0,9",
+                        "--kinematics", "rotary_a", "--no-check-clearance"], cwd=self.at, check=True)
+        moves = moves_of((self.at / "x.gcode").read_text(), "A", (100, 100, 9))
+        inner, lines = [], 0
+        for move in moves:
+            if move.e <= 0:
+                continue
+            lines += 1
+            self.assertLess(abs(move.tips[1][0]), 10)
+            for t in (0.5, 1):
+                y, z = (move.start[k] + t * (move.end[k] - move.start[k]) for k in "YZ")
+                inner.append(math.hypot(y - 100, z - 9) - move.top)
+        self.assertGreater(lines, 1000)
+        self.assertLess(max(inner) - min(inner), 0.03)  # chords of the layer, field_tolerance
+        self.assertLess(abs(sum(inner) / len(inner) - 6), 0.02)
 
     def test_inverse_time_says_the_same(self):
         usual = moves_of(self.printed("--kinematics", "table_bc"), "BC")
