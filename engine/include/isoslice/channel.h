@@ -79,7 +79,8 @@ typedef struct iso_channel_options {
 ISO_API iso_channel_options iso_channel_defaults(void);
 
 /* One ring: a level of one tower. Its distances along the surface are measured anew, on a
- * square-link three times as fine; but for rings over the part's top, which no tower has. */
+ * square-link three times as fine; but for rings over the part's top, which no tower
+ * has. */
 typedef struct iso_channel_ring {
     int32_t tower, channel;
     int32_t measured;         /* 0: mean, least and most are the height */

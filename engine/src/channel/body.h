@@ -34,10 +34,6 @@ struct iso_channels {
     iso_channel_figures figures;
 };
 
-static inline int32_t samples_of(const iso_channels *c) {
-    return c->options.samples;
-}
-
 void channels_report(const iso_channels *c, double done, const char *stage);
 
 /* How far apart rings are on the surface: figures.pitch_*, spread_rms, and mean, least, most of the

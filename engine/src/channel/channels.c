@@ -497,11 +497,12 @@ iso_status iso_channels_new(iso_channels **channels, const iso_mesh *mesh,
             break;
         if (make(&better, mesh, &finer) != ISO_OK)
             break; /* as between threads of a screw: the coarser ones will do */
-        bool is_better = better->figures.pitch_max < error;
-        iso_channels_free(is_better ? *channels : better);
-        if (!is_better)
-            break;
-        *channels = better;
+        double after = better->figures.pitch_max;
+        iso_channels_free(after < error ? *channels : better);
+        if (after < error)
+            *channels = better;
+        if (after > error / 2)
+            break; /* it isn't for the levels */
     }
     return ISO_OK;
 }

@@ -1,9 +1,9 @@
-/* How far apart the rings are, measured on square-links of their own, three times as fine in both
- * directions: where a point lies between two contours its height does between theirs. */
+/* How far apart the rings are, measured on square-links of their own with three times as many
+ * contours and samples: where a point lies between two contours its height does between theirs. */
 #include "channel/body.h"
 #include "channel/polyline.h"
 
-enum { FINER = 3 };
+enum { FINER = 3, SAMPLES_MOST = 1000 };
 
 /* Of the pitch: farther than this off all towers there is nothing to measure by, as on the part's
  * top; nor is a ring of which there is more than the other share. */
@@ -149,7 +149,9 @@ static void sum_up(iso_channel_figures *f, double pitch, double squares, int64_t
 }
 
 static iso_status measure_all(iso_channels *c, measure *m) {
-    tower_options options = {true, c->options.holes != 0, FINER * c->options.samples};
+    int32_t few = c->options.samples,
+            many = FINER * few < SAMPLES_MOST ? FINER * few : SAMPLES_MOST;
+    tower_options options = {true, c->options.holes != 0, few > many ? few : many};
     contours all;
     double squares = 0;
     int64_t count = 0;
