@@ -124,6 +124,50 @@ static void test_kinds(void) {
     chart_free(NULL);
 }
 
+/* Flat layers that bend into cones: where the field is even already a layer is found by one look,
+ * and as right as where it isn't. */
+static void test_points_of_a_blend(void) {
+    iso_field *field = NULL;
+    chart *map = NULL;
+    chart_point point[400];
+    iso_vec2 flat[400];
+    CHECK_OK(iso_field_blend(&field, field_of("cone:0.4"), 0, 2, 6));
+    CHECK_OK(chart_new(&map, field, false, box, (double[2]){0, 18}));
+    CHECK(chart_reach(map) >= 1);
+    for (double r = 0.3; r < 18; r += 0.7) {
+        for (int i = 0; i < 400; i++)
+            flat[i] = (iso_vec2){random_between(-20, 20), random_between(-20, 20)};
+        CHECK_OK(chart_layer(point, map, flat, (double[2]){r, 0.2}, 400));
+        for (int i = 0; i < 400; i++) {
+            double value, below;
+            iso_vec3 gradient, low = point[i].at;
+            iso_field_evaluate(&value, &gradient, field, &point[i].at, 1);
+            CHECK_NEAR(r, value, 1e-9);
+            CHECK_NEAR(1, vec3_dot(vec3_unit(gradient), point[i].normal), 1e-9);
+            low.z -= 0.2 * point[i].volume;
+            iso_field_evaluate(&below, NULL, field, &low, 1);
+            CHECK_NEAR(r - 0.2, below, 2e-4);
+        }
+    }
+    chart_free(map);
+    iso_field_free(field);
+}
+
+/* How far normals tell: the shorter the waves, the less. */
+static void test_reach(void) {
+    const char *const text[] = {"cone:0.4", "sphere:0,0,-30", "wave:0.3,3", "wave:1,12"};
+    const double least[] = {0, 8, 1, 4}, most[] = {0, 16, 2, 12};
+    for (int k = 0; k < 4; k++) {
+        iso_field *field = field_of(text[k]);
+        chart *map = NULL;
+        const double low = k == 1 ? 30 : 0;
+        CHECK_OK(chart_new(&map, field, false, box, (double[2]){low, low + 12}));
+        CHECK(chart_reach(map) >= least[k] && chart_reach(map) <= most[k]);
+        chart_free(map);
+        iso_field_free(field);
+    }
+}
+
 /* ---- what can't be ---- */
 
 static void test_layers_that_fold_are_refused(void) {
@@ -362,6 +406,27 @@ static void test_volume_of_an_elbow_by_a_fan(void) {
     iso_field_free(field);
 }
 
+static iso_vec3 triangle(double t, double r) {
+    double d = t < 0.3 ? 25 : t < 0.6 ? 31 : 37, y = t < 0.3 ? 3 : t < 0.6 ? -5 : -1;
+    (void)r;
+    return vec3(-30 + d * cos(fan_angle), y, d * sin(fan_angle));
+}
+
+/* What a fan's layer holds goes with the distance from the axis: of a triangle, that of its middle.
+ */
+static void test_volume_of_a_layer_of_a_fan(void) {
+    static ring of;
+    iso_field *field = field_of("fan:y,-30,0,30");
+    chart *map = chart_of(field, CHART_FAN, 0, 60);
+    fan_angle = 0.5;
+    ring_begin(&of);
+    ring_add(&of, triangle, 15, 3);
+    double area = 0.5 * (8 * (37 - 25) - 4 * (31 - 25)), middle = (25 + 31 + 37) / 3.0;
+    CHECK_NEAR(area * middle / 30 * 0.6, volume_of(map, &of, 15, 0.6), 1e-9);
+    chart_free(map);
+    iso_field_free(field);
+}
+
 /* A spherical dome's layers as heights: the dome's volume, whatever grid its layers are laid on. */
 static iso_vec3 dome_rim(double t, double r) {
     double rim = sqrt(r * r - 30 * 30);
@@ -438,6 +503,8 @@ static void test_out_of_memory(void) {
 int main(void) {
     RUN(test_points_there_and_back);
     RUN(test_points_of_space_come_down);
+    RUN(test_points_of_a_blend);
+    RUN(test_reach);
     RUN(test_kinds);
     RUN(test_layers_that_fold_are_refused);
     RUN(test_a_fan_beside_its_axis);
@@ -446,6 +513,7 @@ int main(void) {
     RUN(test_volume_of_a_ball_by_spheres);
     RUN(test_volume_of_a_tube_by_cylinders);
     RUN(test_volume_of_an_elbow_by_a_fan);
+    RUN(test_volume_of_a_layer_of_a_fan);
     RUN(test_volume_of_a_dome_by_heights);
     RUN(test_out_of_memory);
     return check_verdict();
