@@ -328,13 +328,13 @@ static void test_proofs(clearance_turning turning) {
 static void test_ground(void) {
     test_proofs(CLEARANCE_UPRIGHT);
 }
-static void test_space_about_x(void) {
+static void test_room_about_x(void) {
     test_proofs(CLEARANCE_ABOUT_X);
 }
-static void test_space_about_y(void) {
+static void test_room_about_y(void) {
     test_proofs(CLEARANCE_ABOUT_Y);
 }
-static void test_space_table(void) {
+static void test_room_table(void) {
     test_proofs(CLEARANCE_ABOUT_ALL);
 }
 
@@ -344,8 +344,8 @@ int main(void) {
     RUN(test_points_about_y);
     RUN(test_points_table);
     RUN(test_ground);
-    RUN(test_space_about_x);
-    RUN(test_space_about_y);
-    RUN(test_space_table);
+    RUN(test_room_about_x);
+    RUN(test_room_about_y);
+    RUN(test_room_table);
     return check_verdict();
 }

@@ -313,21 +313,23 @@ static int parts_near(const room_question *question, iso_vec3 middle, double bal
     return parts;
 }
 
-/* Is the part above the cell's plane in both poses, and between? */
-static bool above_cell(const room_question *question, int part, const room_cell *cell,
-                       iso_vec3 middle) {
-    const tool_shape *shape =
-        part == TOOL_NOZZLE ? &question->nozzle : &question->room->shape[part];
+/* Of places no more than `far` from the tip, between the poses they are off the line between those
+ * by no more than this. */
+static double sag_of(const room_question *question, double far) {
+    return far * question->turn * question->turn / 2;
+}
+
+/* Is a box above the cell's plane in both poses, and between? */
+static bool box_above(const room_question *question, const tool_shape *shape, const room_cell *cell,
+                      iso_vec3 middle) {
     iso_vec3 up = parts_of(cell->normal), down = vec3_times(up, -1);
-    /* Between poses points are below the line between theirs by as much. */
-    double far = shape->round ? shape->radius_high + shape->radius_low
-                              : 2 * (fabs(shape->box_low.x) + fabs(shape->box_high.x) +
-                                     fabs(shape->box_low.y) + fabs(shape->box_high.y));
-    far += part == TOOL_NOZZLE ? shape->high : shape->low;
-    double sag = far * question->turn * question->turn * 32767;
+    double far = shape->round ? shape->radius_low
+                              : fabs(shape->box_low.x) + fabs(shape->box_high.x) +
+                                    fabs(shape->box_low.y) + fabs(shape->box_high.y);
+    double sag = 32767 * sag_of(question, far + shape->low);
     for (int end = 0; end < 2; end++) {
         const tool_pose *pose = &question->pose[end];
-        if (vec3_dot(up, pose->axis) <= 0 && part != TOOL_NOZZLE)
+        if (vec3_dot(up, pose->axis) <= 0)
             return false;
         iso_vec3 lowest = vec3_minus(tool_support(shape, pose, down), middle);
         if (vec3_dot(up, lowest) - sag <= cell->offset)
@@ -336,10 +338,53 @@ static bool above_cell(const room_question *question, int part, const room_cell 
     return true;
 }
 
+/* The same of the nozzle: of its flats at both ends. */
+static bool nozzle_above(const room_question *question, const room_cell *cell, iso_vec3 middle) {
+    const tool_shape *cone = &question->nozzle;
+    iso_vec3 up = parts_of(cell->normal);
+    double size = vec3_dot(up, up);
+    double low_sag = 32767 * sag_of(question, cone->low + cone->radius_low);
+    double high_sag = 32767 * sag_of(question, cone->high + cone->radius_high);
+    for (int end = 0; end < 2; end++) {
+        const tool_pose *pose = &question->pose[end];
+        double along = vec3_dot(up, pose->axis), tip = vec3_dot(up, vec3_minus(pose->tip, middle));
+        double across = sqrt(most_of(0, size - along * along));
+        double low = tip + cone->low * along - cone->radius_low * across - low_sag;
+        double high = tip + cone->high * along - cone->radius_high * across - high_sag;
+        if (low <= cell->offset || high <= cell->offset)
+            return false;
+    }
+    return true;
+}
+
+/* Is all that is in the cell, under its plane, beyond the plane that touches the cone where it
+ * faces the cell? With w square to that plane and m to the cell's, w p = (w + a m) p - a m p is at
+ * least what the first is in the cell's corners, less a times the cell's offset, for any a > 0. */
+static bool cone_beside(const room_question *question, const room_cell *cell, iso_vec3 middle) {
+    const tool_shape *cone = &question->nozzle;
+    double cosine = question->room->cosine, sine = cosine * question->room->tool->tangent;
+    iso_vec3 from = vec3_minus(middle, question->tip);
+    iso_vec3 out = vec3_along(from, -vec3_dot(from, question->axis), question->axis);
+    iso_vec3 side = vec3_along(vec3_times(vec3_unit(out), cosine), -sine, question->axis);
+    iso_vec3 rest = vec3_along(side, sine / 32767, parts_of(cell->normal));
+    double corner = (fabs(rest.x) + fabs(rest.y) + fabs(rest.z)) * (CELL / 2);
+    double least = -corner - sine * cell->offset / 32767;
+    least -= sag_of(question, cone->high + cone->radius_high);
+    for (int end = 0; end < 2; end++) {
+        iso_vec3 most = tool_support(cone, &question->pose[end], side);
+        if (vec3_dot(side, vec3_minus(most, middle)) >= least)
+            return false;
+    }
+    return true;
+}
+
 static void ask_cell(room_question *question, const room_cell *cell, iso_vec3 middle) {
     int near = parts_near(question, middle, CELL * HALF_DIAGONAL), parts = 0;
     for (int i = 0; near >> i; i++)
-        if ((near >> i & 1) && !above_cell(question, i, cell, middle))
+        if ((near >> i & 1) &&
+            !(i == TOOL_NOZZLE
+                  ? nozzle_above(question, cell, middle) || cone_beside(question, cell, middle)
+                  : box_above(question, &question->room->shape[i], cell, middle)))
             parts |= 1 << i;
     if (!parts)
         return;
