@@ -263,6 +263,12 @@ static void test_a_loop_around_a_cylinder(void) {
     double exact = chart_period(map) * 800000 / 1e8 * 9.9 / 10;
     CHECK_NEAR(exact, volume_of(&out), 1e-4 * exact);
     CHECK_EQUAL(1, out.path[0].closed);
+    o.arcs = true; /* then vertices are where the layer is */
+    CHECK_OK(lift_paths(&out, &flat, map, &o, &arena));
+    for (int32_t i = 0; i < out.vertex_count; i++) {
+        iso_vec3 at = place_of(&out, i, o.z);
+        CHECK_NEAR(10, sqrt(at.x * at.x + at.y * at.y), 1.5e-4);
+    }
     chart_free(map);
     iso_field_free(field);
     iso_paths_free(&flat);

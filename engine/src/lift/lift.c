@@ -179,7 +179,7 @@ static int32_t choose_vertices(lift_task *t, int64_t first, int64_t last) {
     for (int64_t i = first; i < last; count++) {
         int64_t end = line_end(t, i);
         t->chosen[count] = i;
-        t->rise[count] = chart_rise(&t->samples.point[i], &t->samples.point[end]);
+        t->rise[count] = t->arcs ? 0 : chart_rise(&t->samples.point[i], &t->samples.point[end]);
         i = end;
     }
     t->chosen[count] = last;
@@ -279,6 +279,7 @@ iso_status lift_paths(iso_paths *out, const iso_paths *flat, const chart *map,
     lift_task task = {.flat = flat,
                       .chart = map,
                       .options = options,
+                      .arcs = options->arcs && chart_kind_of(map) == CHART_CYLINDER,
                       .limits = {.layer = {options->r, options->thickness},
                                  .tolerance = options->tolerance,
                                  .bump = both_sides * options->tolerance,

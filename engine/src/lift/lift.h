@@ -21,6 +21,7 @@ typedef struct lift_options {
     double clearance;   /* mm above the layer, of travels; of short ones less */
     double tip;         /* mm: half the nozzle's flat tip if it doesn't tilt with the layer: uphill
                          * it is lower than the layer, so travels are higher by that; 0: it does */
+    bool arcs;          /* around a cylinder the machine draws arcs: lines lie on the layer */
     double near;        /* mm: shorter travels within a layer go straight, along the beads */
     double slope;       /* tangent: the steepest that a layer may lie; 0: any */
     double least, most; /* mm: thickness of a bead; 0: any */

@@ -10,6 +10,7 @@ typedef struct lift_task {
     const chart *chart;
     const lift_options *options;
     sample_limits limits; /* of beads */
+    bool arcs;            /* are drawn from vertex to vertex */
     samples samples;      /* of beads: path by path, those without vertices have none */
     double *length;       /* [samples] mm in the chart of the piece that begins there */
     int64_t *chosen;      /* [samples] those of a path that become its vertices */
