@@ -7,67 +7,14 @@
 #include "base/series.h"
 #include "base/vector.h"
 #include "config/settings.h"
+#include "footing.h"
 #include "slice/range.h"
-
-/* What bends by A over a height H has a field that rises by 1 -+ 1.5 A / H or so. */
-#define BLEND_PER_BEND 5.0
 
 /* mm: sum of two sides of a face on which more than the corners is looked at. */
 #define LARGE_FACE 6
 
 static bool turns(const iso_options *options) {
     return options->kinematics != ISO_KINEMATICS_CARTESIAN;
-}
-
-/* ---- a flat base ---- */
-
-enum { BEND_SAMPLES = 33 };
-
-/* Least and greatest of F - z above the object's footprint, at a height. */
-static iso_status find_bend(double bend[2], const iso_field *field, const iso_object *object,
-                            double z) {
-    iso_vec3 at[BEND_SAMPLES];
-    double value[BEND_SAMPLES];
-    bend[0] = INFINITY;
-    bend[1] = -INFINITY;
-    for (int j = 0; j < BEND_SAMPLES; j++) {
-        double y = object->min.y + (object->max.y - object->min.y) * j / (BEND_SAMPLES - 1);
-        for (int i = 0; i < BEND_SAMPLES; i++) {
-            double x = object->min.x + (object->max.x - object->min.x) * i / (BEND_SAMPLES - 1);
-            at[i] = vec3(x, y, z);
-        }
-        iso_field_evaluate(value, NULL, field, at, BEND_SAMPLES);
-        for (int i = 0; i < BEND_SAMPLES; i++) {
-            if (!isfinite(value[i]))
-                return iso_fail(ISO_BAD_CONFIG, "field: it has no value at x %g, y %g, z %g",
-                                at[i].x, at[i].y, at[i].z);
-            bend[0] = fmin(bend[0], value[i] - z);
-            bend[1] = fmax(bend[1], value[i] - z);
-        }
-    }
-    return ISO_OK;
-}
-
-static iso_status blend(iso_field **field, iso_report *report, const iso_options *options,
-                        const iso_object *object) {
-    double base = options->field_base, height = options->field_blend, bend[2];
-    ISO_TRY(find_bend(bend, *field, object, base));
-    if (!(height > 0)) { /* how much it bends depends a little on how high that is */
-        for (int turn = 0; turn < 2; turn++) {
-            height = fmax(BLEND_PER_BEND * (bend[1] - bend[0]) / 2, options->layer_height);
-            ISO_TRY(find_bend(bend, *field, object, base + height / 2));
-        }
-    }
-    if (base + height > object->max.z)
-        ISO_TRY(iso_report_warn(report, "field-blend",
-                                "layers bend from %.2f to %.2f mm, and the part is only %.2f mm "
-                                "high: its top isn't as curved as the field is",
-                                base, base + height, object->max.z));
-    iso_field *blended;
-    iso_status status =
-        iso_field_blend(&blended, *field, (bend[0] + bend[1]) / 2, base, base + height);
-    *field = status == ISO_OK ? blended : NULL;
-    return status;
 }
 
 /* ---- how thick layers are ---- */
@@ -148,7 +95,7 @@ static iso_status make(iso_curved *curved, iso_report *report, const iso_options
                                         "isoslice contours and channels, not for layers");
     ISO_TRY(check_options(options));
     if (options->field_flat_base && !turns(options) && kind != ISO_FIELD_AUTO_TOP)
-        ISO_TRY(blend(&curved->field, report, options, object));
+        ISO_TRY(footing_blend(&curved->field, report, options, object));
     iso_vec3 box[2] = {object->min, object->max};
     double range[2];
     ISO_TRY(field_range(range, curved->field, object->mesh, object->mesh_count));
