@@ -11,12 +11,18 @@
 /* mm: what the range may be off. */
 #define RANGE_EXACTNESS 0.001
 
-enum { RANGE_DEPTH = 16 /* times that a face is quartered */ };
+enum {
+    RANGE_DEPTH = 16,      /* times that a face is quartered */
+    RANGE_WORK = 400000,   /* quarterings of all faces together, */
+    RANGE_FACE_WORK = 4000 /* and of one: where bounds tell little, as near a surface that distances
+                              are to, samples as close as this leaves are what is known */
+};
 
 typedef struct range_search {
     const iso_field *field;
     double low, high;
     bounds_cells cells;
+    int32_t work, face_work; /* left to do */
 } range_search;
 
 typedef struct range_face {
@@ -57,8 +63,10 @@ static void search_face(range_search *s, const range_face *f, int depth) {
     double value[3];
     find_box(box, f->corner);
     bounds b = bounds_over(s->field, box[0], box[1]);
-    if (depth == 0 || !may_widen(s, f, &b))
+    if (depth == 0 || !may_widen(s, f, &b) || s->work == 0 || s->face_work == 0)
         return;
+    s->work--;
+    s->face_work--;
     for (int k = 0; k < 3; k++)
         middle[k] = vec3_between(f->corner[k], f->corner[(k + 1) % 3], 0.5);
     iso_field_evaluate(value, NULL, s->field, middle, 3);
@@ -85,6 +93,7 @@ static void search_faces(range_search *s, const double *height, const iso_mesh *
         }
         find_box(box, f.corner);
         const bounds *b = bounds_cells_around(&s->cells, s->field, box[0], box[1]);
+        s->face_work = RANGE_FACE_WORK;
         if (!b || may_widen(s, &f, b))
             search_face(s, &f, RANGE_DEPTH);
     }
@@ -116,7 +125,7 @@ static iso_status search_mesh(range_search *s, double *height, const iso_mesh *m
 
 iso_status field_range(double range[2], const iso_field *field, const iso_mesh *mesh,
                        int32_t count) {
-    range_search s = {.field = field, .low = INFINITY, .high = -INFINITY};
+    range_search s = {.field = field, .low = INFINITY, .high = -INFINITY, .work = RANGE_WORK};
     iso_status status = ISO_OK;
     for (int32_t i = 0; i < count && status == ISO_OK; i++) {
         double *height;
@@ -128,6 +137,8 @@ iso_status field_range(double range[2], const iso_field *field, const iso_mesh *
     }
     if (status == ISO_OK && !(s.low <= s.high))
         status = iso_fail(ISO_BAD_CONFIG, "field: there is nothing that it could be of");
+    if (status == ISO_OK && !(isfinite(s.low) && isfinite(s.high)))
+        status = iso_fail(ISO_BAD_CONFIG, "field: it has no value on some of the model");
     range[0] = s.low;
     range[1] = s.high;
     return status;

@@ -2,8 +2,9 @@
 
 #include "base/vector.h"
 
-/* More faces than this are a field that no print can follow: 4 GB. */
-enum { FACES_MAX = 40000000 };
+/* More faces than this, and than so many of each that there was, are a field that no print can
+ * follow: 1 GB. */
+enum { FACES_MAX = 10000000, FACES_A_FACE = 8 };
 
 static int finite(double x) {
     return x - x == 0;
@@ -56,10 +57,11 @@ void refined_free(refined *r) {
 
 static iso_status grow_faces(refined *r, int64_t count) {
     int32_t before = r->own_origin ? r->triangle_count : 0;
-    if (count > FACES_MAX)
+    if (count > FACES_MAX &&
+        (count > FACES_A_FACE * (int64_t)r->mesh->triangle_count || count > INT32_MAX / 3))
         return iso_fail(ISO_OUTSIDE,
-                        "the field is too wild for the model: more than %d faces are needed",
-                        FACES_MAX);
+                        "the field is too wild for the model: %lld faces are not enough",
+                        (long long)r->triangle_count);
     ISO_TRY(ISO_GROW(r->own_origin, r->dart_capacity[0], 3 * count));
     ISO_TRY(ISO_GROW(r->own_opposite, r->dart_capacity[1], 3 * count));
     ISO_TRY(ISO_GROW(r->middle, r->dart_capacity[2], 3 * count));
