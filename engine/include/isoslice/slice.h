@@ -86,7 +86,10 @@ ISO_API iso_field_slicing iso_field_slicing_defaults(void); /* 0.01, 0.002 */
  * agree, until F is unimodal on them, or misses every level, for certain: loops inside one triangle
  * are found too. Points lie on the mesh, and on the level within 1 um (as far as the gradient
  * allows). Every contour of a closed mesh closes; seen against the gradient material is on the
- * left. ISO_UNSLICEABLE: F has no value at some point of the mesh, which the message names. */
+ * left. ISO_UNSLICEABLE: F has no value at some point of the mesh, or jumps there; the message
+ * names it. ISO_OUTSIDE: F is so wild that millions of faces aren't enough. `options` NULL: the
+ * defaults. A field that is measured along the mesh itself is linear on its faces, which are not
+ * split (iso_slice_heights). */
 ISO_API iso_status iso_slice_field(iso_curves *curves, const iso_mesh *mesh, const iso_field *field,
                                    const double *level, int32_t level_count,
                                    const iso_field_slicing *options) ISO_MUST_CHECK;
