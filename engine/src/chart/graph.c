@@ -5,8 +5,9 @@
 #include "chart/kind.h"
 
 enum {
-    BLOCK = 128,     /* points at a time: what they need stays in the first cache */
-    ROUNDS_MOST = 80 /* of the search for z; halving alone takes 50 */
+    BLOCK = 128,      /* points at a time: what they need stays in the first cache */
+    ROUNDS_MOST = 80, /* of the search for z; halving alone takes 50 */
+    FAR_OFF = 10      /* strides: nothing that is printed is as far from the part's middle */
 };
 
 /* A step of Newton's is the last one if it is no longer than this, mm: its error goes with the
@@ -80,7 +81,7 @@ static iso_status no_layer(const search *s, double r) {
 
 static iso_status run_search(chart_point *point, const chart *map, search *s, double r) {
     for (int round = 0; s->count > 0; round++) {
-        if (round == ROUNDS_MOST)
+        if (round == ROUNDS_MOST || fabs(s->at[0].z - map->middle.z) > FAR_OFF * map->stride)
             return no_layer(s, r);
         advance(point, map, s, r);
     }

@@ -28,16 +28,20 @@ typedef struct grid {
     chart_point *point; /* [rows][columns]; without a volume: no layer is there */
 } grid;
 
-/* Row by row: some may lead beyond where the layer ends. */
-static void lift_grid(grid *g, iso_vec2 *flat, const chart *map, iso_vec2 low, double r) {
+/* Row by row: some may lead beyond where the layer ends. Are there some that don't? */
+static bool lift_grid(grid *g, iso_vec2 *flat, const chart *map, iso_vec2 low, double r) {
+    int32_t there = 0;
     for (int32_t row = 0; row < g->rows; row++) {
         chart_point *point = g->point + (int64_t)row * g->columns;
         for (int32_t i = 0; i < g->columns; i++)
             flat[i] = (iso_vec2){low.x + i * g->size, low.y + row * g->size};
-        if (chart_lift(point, map, flat, r, g->columns) != ISO_OK)
+        if (chart_lift(point, map, flat, r, g->columns) == ISO_OK)
+            there++;
+        else
             for (int32_t i = 0; i < g->columns; i++)
                 point[i].volume = 0;
     }
+    return 4 * there >= g->rows;
 }
 
 /* Of three points in a line, the second at `share` of the way: do the outer ones tell how far it is
@@ -80,8 +84,8 @@ iso_status graph_reach(double *reach, const chart *map, const iso_vec3 box[2],
     for (int k = 0; k < LEVELS && spans > 0; k++) {
         double r = range[0] + (range[1] - range[0]) * (k + 0.5) / LEVELS;
         int told = 0;
-        lift_grid(&g, flat, map, (iso_vec2){box[0].x, box[0].y}, r);
-        while (told < spans && grid_tells(&g, span[told + 1]))
+        bool there = lift_grid(&g, flat, map, (iso_vec2){box[0].x, box[0].y}, r);
+        while (there && told < spans && grid_tells(&g, span[told + 1]))
             told++;
         spans = told;
     }
