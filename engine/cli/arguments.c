@@ -216,12 +216,15 @@ static iso_status read_length(double *length, const argument *given) {
     return ISO_OK;
 }
 
-static iso_status read_view(double view[2], const argument *given) {
+static iso_status read_view(iso_arguments *arguments, const argument *given) {
+    double *view = arguments->view;
     const char *at = given->value;
     if (!iso_number_read(&view[0], &at) || *at++ != ',' || !iso_number_read(&view[1], &at) || *at ||
-        view[1] < -90 || view[1] > 90)
-        return iso_fail(ISO_USAGE, "%s %.60s: two angles are due, as -60,30", given->written,
-                        given->value);
+        !(view[0] >= -360 && view[0] <= 360) || view[1] < -90 || view[1] > 90)
+        return iso_fail(ISO_USAGE,
+                        "%s %.60s: two angles are due, as -60,30; the second one from -90 to 90",
+                        given->written, given->value);
+    arguments->view_given = true;
     return ISO_OK;
 }
 
@@ -378,7 +381,7 @@ static iso_status read_flag(iso_arguments *arguments, const argument *given) {
     case FLAG_layers:
         return read_layers(arguments, given);
     case FLAG_view:
-        return read_view(arguments->view, given);
+        return read_view(arguments, given);
     case FLAG_help:
     case FLAG_version:
     case FLAG_list_options:

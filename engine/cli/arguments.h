@@ -47,7 +47,7 @@ enum { ISO_LAYERS_MAX = 256 };
 
 typedef struct iso_arguments {
     iso_verb verb;
-    bool verb_given;
+    bool verb_given, view_given;
     iso_page page; /* to be printed instead of working */
     bool strict, quiet, progress, timestamp, travels, json;
     int32_t threads, columns;

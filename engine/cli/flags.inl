@@ -56,9 +56,9 @@ ISO_FLAG(write, 0, "WHAT", H,
          "What goes into an .stl: channels or mould. Usually the mould if the file's name has "
          "mould or mold in it, else the channels.")
 ISO_FLAG(json, 0, "", I | L | H, "Print as JSON what is found.")
-ISO_FLAG(view, 0, "ANGLES", C,
-         "Where contours of curved layers are seen from: degrees from x towards y, and above the "
-         "ground, as -60,30.")
+ISO_FLAG(view, 0, "ANGLES", C | P,
+         "Where curved layers are seen from: degrees from x towards y, and above the ground, as "
+         "-60,30. Layers of G-code are else seen from above.")
 ISO_FLAG(layers, 0, "LIST", P, "Which layers to draw, as 1,20,-1; -1 is the last one.")
 ISO_FLAG(columns, 0, "N", P, "Layers drawn in a row.")
 ISO_FLAG(travels, 0, "", P, "Draw moves that don't print; --no-travels doesn't. Usual.")

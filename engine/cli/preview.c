@@ -16,6 +16,10 @@ iso_status iso_verb_preview(const iso_arguments *arguments) {
     options.layer = arguments->layer;
     options.layer_count = arguments->layer_count;
     options.travels = arguments->travels;
+    if (arguments->view_given) {
+        options.view[0] = arguments->view[0];
+        options.view[1] = arguments->view[1];
+    }
     if (arguments->columns > 0)
         options.columns = arguments->columns;
     return iso_preview_svg(path, arguments->file[0], &options);

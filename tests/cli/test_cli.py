@@ -170,6 +170,8 @@ class Cli(unittest.TestCase):
         self.fails(2, ".mlk, .json or .svg", "contours", "part.stl", "-o", "part.png")
         self.fails(2, "there is no flag --perimeters", "info", "part.stl", "--perimeters", "2")
         self.fails(2, "a list of layers", "preview", "part.stl", "--layers", "1;2")
+        self.fails(2, "two angles", "preview", "part.gcode", "--view", "30")
+        self.fails(2, "two angles", "preview", "part.gcode", "--view=-60,100")
 
     def test_what_is_no_model(self):
         self.fails(3, "missing.stl", "missing.stl")

@@ -117,6 +117,51 @@ static void test_moves_in_space(void) {
     CHECK_EQUAL(2, occurrences("</tspan> of 2, z = "));
 }
 
+static iso_status draw_from(const char *text, double azimuth, double elevation) {
+    iso_preview_options options = iso_preview_defaults();
+    options.view[0] = azimuth;
+    options.view[1] = elevation;
+    write_text(text);
+    remove(svg_path);
+    ISO_TRY(iso_preview_svg(svg_path, gcode_path, &options));
+    read_picture();
+    return ISO_OK;
+}
+
+static const char in_space[] = "M83\n;LAYER_CHANGE\n;HEIGHT:0.2\n;TYPE:Perimeter\n;WIDTH:0.5\n"
+                               "G1 X10 Y0 Z2 F600\nG1 X13 Y0 Z6 E1\nG1 X13 Y4 Z6 E1\n";
+
+/* A layer from the front: x to the right, z up, beads no wider than they are high. */
+static void test_sees_layers_from_the_side(void) {
+    CHECK_OK(draw_from(in_space, -90, 0));
+    CHECK(strstr(picture, "M1000 -200l300 -400l0 0\""));
+    CHECK_EQUAL(2, beads(ISO_ROLE_PERIMETER, 20));
+    CHECK(strstr(picture, "of 1, z = 2 to 6 mm<"));
+    CHECK(strstr(picture, ">Perimeter, 0.01 m<")); /* 5 + 4 mm in space */
+    CHECK_OK(draw_from(in_space, 0, 0));           /* from the right: y to the right */
+    CHECK(strstr(picture, "M0 -200l0 -400l400 0\""));
+    CHECK_OK(draw_from(in_space, -90, 30)); /* z cos(30) + y sin(30) upwards */
+    CHECK(strstr(picture, "M1000 -173l300 -347l0 -200\""));
+    CHECK_EQUAL(2, beads(ISO_ROLE_PERIMETER, 35)); /* 0.2 + 0.3 sin(30) */
+    CHECK_OK(draw_from(in_space, -90, 90));
+    CHECK(strstr(picture, "M1000 0l300 0l0 -400\""));
+    CHECK_STATUS(ISO_USAGE, draw_from(in_space, -90, 91));
+    CHECK_STATUS(ISO_USAGE, draw_from(in_space, -90, -91));
+    CHECK_STATUS(ISO_USAGE, draw_from(in_space, 400, 0));
+}
+
+/* A half circle of radius 5 that rises, and a full one: ellipses, in chords of 7.5 degrees. */
+static void test_sees_arcs_from_the_side(void) {
+    CHECK_OK(draw_from("M83\n;LAYER_CHANGE\n;HEIGHT:0.2\n;TYPE:Perimeter\n;WIDTH:0.5\n"
+                       "G1 X10 Y0 Z1 F600\nG3 X0 Y0 Z2 I-5 J0 E1\nG2 I5 J0 E1\n",
+                       -90, 0));
+    CHECK(!strstr(picture, "a500 "));
+    int count = beads(ISO_ROLE_PERIMETER, 20);
+    CHECK(count >= 3 * 24 && count <= 3 * 25);
+    CHECK(strstr(picture, "M1000 -100l-4 -")); /* 5 - 5 cos(7.5) = 0.04 mm */
+    CHECK(strstr(picture, "of 1, z = 1 to 2 mm<"));
+}
+
 static void test_chooses_layers(void) {
     const int32_t last[] = {-1, 2}, none[] = {3}, zero[] = {0};
     CHECK_OK(draw(two_layers, last, 2));
@@ -204,6 +249,8 @@ static void test_survives_every_failing_allocation(void) {
 int main(void) {
     RUN(test_counts_beads_by_role_and_width);
     RUN(test_moves_in_space);
+    RUN(test_sees_layers_from_the_side);
+    RUN(test_sees_arcs_from_the_side);
     RUN(test_chooses_layers);
     RUN(test_a_layer_with_nothing_in_it);
     RUN(test_width_from_extrusion);

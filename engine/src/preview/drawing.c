@@ -47,12 +47,6 @@ static int64_t root(int64_t square) {
     return low;
 }
 
-static int64_t chord(const iso_preview_stroke *stroke) {
-    int64_t dx = (int64_t)stroke->to.x - stroke->from.x;
-    int64_t dy = (int64_t)stroke->to.y - stroke->from.y;
-    return root(dx * dx + dy * dy);
-}
-
 static layout lay_out(const iso_preview_drawing *drawing, const iso_preview_options *options) {
     layout l = {.columns = drawing->panel_count};
     if (l.columns > options->columns)
@@ -67,7 +61,7 @@ static layout lay_out(const iso_preview_drawing *drawing, const iso_preview_opti
     for (int64_t i = 0; i < drawing->stroke_count; i++)
         if (drawing->stroke[i].width > 0) {
             l.shown[drawing->stroke[i].role] = true;
-            l.length[drawing->stroke[i].role] += chord(&drawing->stroke[i]);
+            l.length[drawing->stroke[i].role] += drawing->stroke[i].length;
         }
     for (int role = 0; role < ISO_ROLE_COUNT; role++)
         l.legend_count += l.shown[role];
@@ -181,11 +175,13 @@ static void write_panel(iso_output *output, const iso_preview_drawing *drawing, 
     const iso_preview_panel *panel = &drawing->panel[index];
     int32_t left = GAP + index % l->columns * (l->panel_width + GAP);
     int32_t top = TITLE + index / l->columns * (l->panel_height + TITLE);
-    char z[32];
+    char z[32], high[32];
+    bool level = panel->top == panel->z;
     iso_output_print(output,
                      "<text x=\"%d\" y=\"%d\"><tspan font-weight=\"bold\">Layer %d</tspan> of %d, "
-                     "z = %s mm</text>\n",
-                     left, top - 12, panel->layer + 1, drawing->layers, format_mm(z, panel->z));
+                     "z = %s%s%s mm</text>\n",
+                     left, top - 12, panel->layer + 1, drawing->layers, format_mm(z, panel->z),
+                     level ? "" : " to ", level ? "" : format_mm(high, panel->top));
     iso_output_print(output,
                      "<svg x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" viewBox=\"%d %d %d %d\">\n"
                      "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#f2f2f0\"/>\n",

@@ -14,14 +14,15 @@ enum { ISO_PREVIEW_UNITS = 100 }; /* of the drawing, a mm: 10 um are finer than 
 
 typedef struct iso_preview_stroke { /* in units of the drawing, y up */
     iso_point from, to, centre;
-    int32_t width; /* 0 for a travel */
+    int32_t width;  /* 0 for a travel */
+    int32_t length; /* in space, of what is straight; of an arc that of its chord */
     int8_t turn;
     uint8_t role;
 } iso_preview_stroke;
 
 typedef struct iso_preview_panel {
     int32_t layer;        /* from 0 */
-    int32_t z;            /* um, of the first bead */
+    int32_t z, top;       /* um, of its lowest bead and its highest one */
     int64_t first, count; /* strokes; they come one layer after the other */
 } iso_preview_panel;
 

@@ -168,10 +168,14 @@ static iso_status visit_halves(machine *m, iso_preview_move *move) {
     if (!move->turn || distance(move->from, move->to) > 0)
         return m->visit(m->payload, move);
     iso_vec2 end = move->to;
+    double end_z = move->z;
     move->to = (iso_vec2){2 * move->centre.x - end.x, 2 * move->centre.y - end.y};
+    move->z = (move->from_z + end_z) / 2;
     ISO_TRY(m->visit(m->payload, move));
     move->from = move->to;
+    move->from_z = move->z;
     move->to = end;
+    move->z = end_z;
     return m->visit(m->payload, move);
 }
 
@@ -188,6 +192,7 @@ static iso_status go_to(machine *m, const line_words *words) {
     }
     iso_preview_move move = {.from = {m->position[0], m->position[1]},
                              .to = {to[0], to[1]},
+                             .from_z = m->position[2],
                              .z = to[2],
                              .role = m->role};
     double extruded = to[3] - m->position[3];
@@ -206,6 +211,7 @@ static iso_status go_to(machine *m, const line_words *words) {
     if (extruded > 0) {
         enter_bead(m, to[2]);
         move.width = width_of(m, extruded, length);
+        move.height = m->height;
         if (!(move.width <= WIDEST_BEAD))
             return beyond(m, "the width of the bead");
     }

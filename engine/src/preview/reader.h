@@ -22,8 +22,9 @@ void iso_preview_text_free(iso_preview_text *text);
 typedef struct iso_preview_move {
     iso_vec2 from, to; /* mm */
     iso_vec2 centre;   /* of an arc */
-    double z;
+    double from_z, z;
     double width;  /* mm; 0 for a travel */
+    double height; /* mm, of a bead; 0 if nothing says it */
     int8_t turn;   /* 0 straight, 1 counter-clockwise, -1 clockwise */
     uint8_t role;  /* iso_role */
     int32_t layer; /* from 0; -1 before the first */
