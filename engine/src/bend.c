@@ -41,10 +41,10 @@ iso_status bend_begin(iso_bend *bend, const iso_options *options, iso_gcode_opti
     gcode->machine = &bend->machine;
     if (!options->check_clearance)
         return ISO_OK;
-    clearance_tool tool = settings_of_tool(options);
+    bend->tool = settings_of_tool(options);
     gcode->watch = watch;
     gcode->watch_payload = bend;
-    return clearance_new(&bend->clearance, &tool);
+    return clearance_new(&bend->clearance, &bend->tool);
 }
 
 void bend_free(iso_bend *bend) {

@@ -17,6 +17,7 @@ typedef struct iso_bend {
     pose_machine machine;
     iso_pose last, *vertex, *travel;
     int64_t vertex_capacity, travel_capacity;
+    clearance_tool tool;
     clearance *clearance; /* or NULL: nobody asks */
     int32_t copy;         /* whose layer the nozzle is on; -1: none */
 } iso_bend;
@@ -26,6 +27,11 @@ typedef struct iso_bend {
 iso_status bend_begin(iso_bend *bend, const iso_options *options, iso_gcode_options *gcode,
                       const iso_curved *curved, iso_point by) ISO_MUST_CHECK;
 void bend_free(iso_bend *bend);
+
+/* What must not touch the print; NULL: nobody asks. */
+static inline const clearance_tool *bend_tool(const iso_bend *bend) {
+    return bend->clearance ? &bend->tool : NULL;
+}
 
 /* A layer of a copy, or of what is around all copies. */
 typedef struct iso_bend_layer {

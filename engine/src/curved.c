@@ -238,6 +238,8 @@ lift_options curved_lift_options(const iso_curved *curved, const iso_options *op
     if (options->kinematics == ISO_KINEMATICS_TABLE_AC ||
         options->kinematics == ISO_KINEMATICS_TABLE_BC)
         lift.turn = degree; /* 0.01 mm between two poses 250 mm from the pivot */
+    lift.arcs = options->kinematics == ISO_KINEMATICS_ROTARY_A ||
+                options->kinematics == ISO_KINEMATICS_ROTARY_B;
     if (!turns(options)) {
         lift.slope = series_tangent(options->field_slope * degree);
         lift.tip = options->clearance_tip / 2;

@@ -15,12 +15,13 @@
 
 #include "base/memory.h"
 #include "base/output.h"
+#include "bend.h"
 #include "config/foreign.h"
 #include "gcode/writer.h"
 #include "path/order.h"
 #include "path/spiral.h"
 #include "plate.h"
-#include "bend.h"
+#include "reachable.h"
 #include "stack.h"
 #include "surround.h"
 
@@ -219,13 +220,21 @@ static iso_status order_layer(iso_job *job, const iso_step *step, int32_t copy, 
     int32_t object = job->plate.instances.instance[copy].object, level = job->next[object];
     const iso_stack *stack = &job->stack[object];
     iso_arena *arena = &job->crew.hand[0].arena;
+    iso_arena_mark mark = iso_arena_get_mark(arena);
     for (int32_t k = 0; k < curved_merges(&stack->curved, level); k++) {
         const iso_layer *layer =
             window_layer(&stack->window, curved_source(&stack->curved, level, k));
         iso_turn turn = {.copy = copy, .tool = tool, .merged = k};
+        iso_sets sets;
         ISO_TRY(curved_part(&turn.paths, &job->bend.part, &stack->curved, &layer->paths,
                             (int32_t[2]){level, k}, arena));
-        ISO_TRY(order_paths(job, step, &turn));
+        double r = stack->curved.low + stack->levels.top[level];
+        ISO_TRY(reachable_sets(&sets, turn.paths, &stack->curved, r, bend_tool(&job->bend), arena));
+        for (int32_t i = 0; i < sets.count; i++) {
+            turn.paths = &sets.set[i];
+            ISO_TRY(order_paths(job, step, &turn));
+        }
+        iso_arena_pop(arena, mark);
     }
     return ISO_OK;
 }
