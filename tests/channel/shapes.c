@@ -155,17 +155,31 @@ void plate_mesh(iso_mesh *mesh, const double (*low)[3], const double (*high)[3],
     take(mesh, triangle, (at - triangle) / 9);
 }
 
+/* A prism from z = 0 to 60. */
+static void upright_mesh(iso_mesh *mesh, const double (*ring)[2], int corners,
+                         const int (*lid)[3]) {
+    int count = 2 * corners + 2 * (corners - 2);
+    float *triangle = malloc((size_t)count * 9 * sizeof *triangle), *at = triangle;
+    if (!triangle)
+        exit(1);
+    at = put_walls(at, ring, corners, 0, 60);
+    for (int i = 0; i < corners - 2; i++)
+        for (int up = 0; up < 2; up++)
+            at = put_flat(at, ring[lid[i][0]], ring[lid[i][1]], ring[lid[i][2]], up ? 60 : 0, up);
+    take(mesh, triangle, count);
+}
+
 void angle_mesh(iso_mesh *mesh) {
     static const double ring[6][2] = {{0, 0}, {70, 0}, {70, 25}, {25, 25}, {25, 70}, {0, 70}};
     static const int lid[4][3] = {{0, 1, 3}, {1, 2, 3}, {0, 3, 5}, {3, 4, 5}};
-    float *triangle = malloc(20 * 9 * sizeof *triangle), *at = triangle;
-    if (!triangle)
-        exit(1);
-    at = put_walls(at, ring, 6, 0, 60);
-    for (int i = 0; i < 4; i++)
-        for (int up = 0; up < 2; up++)
-            at = put_flat(at, ring[lid[i][0]], ring[lid[i][1]], ring[lid[i][2]], up ? 60 : 0, up);
-    take(mesh, triangle, 20);
+    upright_mesh(mesh, ring, 6, lid);
+}
+
+void slot_mesh(iso_mesh *mesh) {
+    static const double ring[8][2] = {{0, 0},   {70, 0},  {70, 50}, {40, 50},
+                                      {40, 15}, {30, 15}, {30, 50}, {0, 50}};
+    static const int lid[6][3] = {{0, 5, 6}, {0, 6, 7}, {0, 4, 5}, {0, 1, 4}, {1, 3, 4}, {1, 2, 3}};
+    upright_mesh(mesh, ring, 8, lid);
 }
 
 void ring_mesh(iso_mesh *mesh, double radius, const shape *hole) {

@@ -33,5 +33,7 @@ void plate_mesh(iso_mesh *mesh, const double (*low)[3], const double (*high)[3],
 void ring_mesh(iso_mesh *mesh, double radius, const shape *hole);
 /* Two arms of 70 x 25 mm, 60 mm tall, from (0, 0). */
 void angle_mesh(iso_mesh *mesh);
+/* A block of 70 x 50 mm with a slot from y = 15 to 50 between x = 30 and 40, 60 mm tall. */
+void slot_mesh(iso_mesh *mesh);
 
 #endif

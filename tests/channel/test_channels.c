@@ -9,6 +9,8 @@
 #include "check.h"
 #include "shapes.h"
 
+#define PI 3.14159265358979323846
+
 static const shape cone = {cone_radius, 0, 40, 1, 1, 0, 72, 21};
 static const shape leaning = {cone_radius, 0, 40, 1, 0.8, 0.3, 72, 21};
 
@@ -246,7 +248,7 @@ static void test_the_reported_error_is_the_true_one(void) {
     const iso_channel_figures *f = iso_channels_figures(channels);
     CHECK(f->ring_count >= 10);
     for (int32_t k = 0; k < f->ring_count; k++) {
-        double at = 30 * atan2(f->ring[k].z, f->ring[k].length / (2 * 3.14159265358979));
+        double at = 30 * atan2(f->ring[k].z, f->ring[k].length / (2 * PI));
         if (k > 0)
             worst = fmax(worst, fabs((at - before) / 5 - 1));
         before = at;
@@ -322,6 +324,7 @@ static void test_towers_branch(void) {
     for (int32_t i = 1, half = f->ring_count / 2; i <= half; i++) {
         CHECK_EQUAL(f->ring[i].tower + 1, f->ring[i + half].tower);
         CHECK_NEAR(f->ring[i].height, f->ring[i + half].height, 1e-9);
+        CHECK(f->ring[i].height > f->ring[i].z + 8); /* the way across the plate comes on top */
         if (i > 1)
             CHECK_NEAR(12, f->ring[i].z - f->ring[i - 1].z, 1e-6);
     }
@@ -388,10 +391,40 @@ static void test_an_angle_is_followed_into_its_corner(void) {
             nearest =
                 fmin(nearest, hypot(middle.link.g[3 * a] - 33, middle.link.g[3 * a + 1] - 33));
         CHECK(nearest < 3); /* rounded by 5 mm */
+        /* five corners gone around, one cut short and rounded, and no loop left of it */
+        double around = 280 + 5 * 90 * PI / 180 * 8 - 2 * 8 - (2 - PI / 2) * 5;
+        for (int32_t k = 0; k < 3; k++)
+            CHECK_NEAR(around, length_of(&middle.link, k), 2);
         iso_multilink_free(&middle.link);
         iso_channels_free(channels);
         iso_mesh_free(&mesh);
     }
+}
+
+/* There is no room in the slot, so channels pass it by. */
+static void test_a_slot_is_passed_by(void) {
+    iso_mesh mesh;
+    slot_mesh(&mesh);
+    for (int mode = 0; mode < ISO_CHANNEL_MODE_COUNT; mode++) {
+        iso_channel_options options = options_of("round:4", ISO_CHANNEL_CLOSED);
+        iso_channels *channels;
+        iso_coloured_link middle;
+        options.mode = (iso_channel_mode)mode;
+        options.depth = 8;
+        CHECK_OK(iso_channels_new(&channels, &mesh, &options));
+        CHECK_OK(iso_channels_check(channels));
+        CHECK_OK(iso_channels_centrelines(&middle, channels));
+        for (int32_t a = 0; a < middle.link.size; a++) {
+            const double *p = middle.link.g + 3 * a;
+            if (p[0] > 20 && p[0] < 50 && p[1] > 10)
+                CHECK(p[1] > 52); /* sinks in a little: the slot's edges are 5 mm to the side */
+        }
+        for (int32_t k = 0; k < 3; k++)
+            CHECK_NEAR(240 + 2 * PI * 8, length_of(&middle.link, k), 4);
+        iso_multilink_free(&middle.link);
+        iso_channels_free(channels);
+    }
+    iso_mesh_free(&mesh);
 }
 
 int main(void) {
@@ -405,6 +438,7 @@ int main(void) {
     RUN(test_towers_branch);
     RUN(test_geodesic_rings_go_over_the_top);
     RUN(test_an_angle_is_followed_into_its_corner);
+    RUN(test_a_slot_is_passed_by);
     RUN(test_the_same_bytes_again);
     RUN(test_no_memory);
     return check_verdict();
