@@ -123,7 +123,7 @@ static iso_status build_towers(iso_channels *c) {
 }
 
 static iso_status push_ring(curve *out, iso_channels *c, const ring *outline) {
-    ring_offset offset = {c->options.depth, c->bend / STEPS_A_BEND, c->part.tree};
+    ring_offset offset = {c->options.depth, c->bend / STEPS_A_BEND, &c->part};
     int32_t folds;
     ISO_TRY(ring_push_off(out, &folds, outline, &offset));
     c->figures.folds += folds;

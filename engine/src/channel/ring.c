@@ -115,7 +115,7 @@ static iso_status put_all(pushing *p) {
 
 static double distance(pushing *p, iso_vec3 at) {
     double most = 2 * p->offset->depth;
-    return sqrt(closest_square(p->offset->part, at, most * most, &p->guess));
+    return sqrt(closest_square(p->offset->part->tree, at, most * most, &p->guess));
 }
 
 /* Where the surface bends towards the ring from above or below, a little farther off is far enough.
@@ -135,19 +135,29 @@ static bool lift(pushing *p, int32_t i) {
     return true;
 }
 
+/* A distance has no sign: beyond the wall opposite points may be far enough off, too. */
 static iso_status keep_far_ones(curve *out, int32_t *folds, pushing *p) {
     bool before = true, first = true;
+    uint8_t *inside;
+    int32_t count = p->line.count;
+    ISO_TRY(ISO_ALLOCATE(inside, 2 * (int64_t)count));
+    uint8_t *far = inside + count;
+    for (int32_t i = 0; i < count; i++)
+        far[i] = lift(p, i);
+    iso_status status =
+        enclosed_inside((void *)&p->offset->part->columns, inside, p->line.point, count);
     *folds = 0;
-    for (int32_t i = 0; i < p->line.count; i++) {
-        bool is_far = lift(p, i);
-        if (is_far)
-            ISO_TRY(curve_add(out, p->line.point[i]));
-        first = i == 0 ? is_far : first;
-        *folds += before && !is_far;
-        before = is_far;
+    for (int32_t i = 0; i < count && status == ISO_OK; i++) {
+        bool kept = far[i] && !inside[i];
+        if (kept)
+            status = curve_add(out, p->line.point[i]);
+        first = i == 0 ? kept : first;
+        *folds += before && !kept;
+        before = kept;
     }
     *folds -= !before && !first && *folds > 1; /* one place, seen at both ends */
-    return ISO_OK;
+    iso_release(inside);
+    return status;
 }
 
 static iso_status push_off(curve *out, int32_t *folds, pushing *p) {

@@ -2,9 +2,8 @@
 #ifndef ISO_CHANNEL_RING_H
 #define ISO_CHANNEL_RING_H
 
-#include "channel/curve.h"
+#include "channel/keep.h"
 #include "channel/tower.h"
-#include "solid/closest.h"
 
 /* A closed ring on the surface; up[i] runs along the surface towards the next ring, so that
  * edge x up leads out of the part. */
@@ -23,9 +22,9 @@ iso_status ring_of_contour(ring *r, const contours *all, int32_t contour, const 
                            iso_arena *arena) ISO_MUST_CHECK;
 
 typedef struct ring_offset {
-    double depth;            /* mm */
-    double step;             /* mm between points of what comes out */
-    const iso_closest *part; /* the part's triangles */
+    double depth; /* mm */
+    double step;  /* mm between points of what comes out */
+    const part_space *part;
 } ring_offset;
 
 /* Push it off by the depth, around edges in arcs. Where that would come nearer to the part again
