@@ -1,7 +1,7 @@
 /* Does the tool of a machine touch what it has printed? By brute force: points of its beads against
  * places of the tool, for prints with curved layers.
  *
- *     collide PRINT.gcode PART.stl [--field TEXT [--base FROM,TO,OFF]] [--center X,Y]
+ *     collide PRINT.gcode PART.stl [--field TEXT [--base FROM,TO,OFF]] [--told] [--center X,Y]
  *             [--kinematics NAME [--pivot X,Y,Z]] [--filament MM] [--step MM] [--tolerance MM]
  *             [--tip DIAMETER] [--cone DEGREES] [--cone-height MM] [--block X,Y,X,Y]
  *             [--carriage-height MM] [--carriage X,Y,X,Y] [--gantry MM]
@@ -56,6 +56,7 @@ typedef struct check {
     world world;
     double deepest[PARTS];
     int found;
+    vec looked; /* where it did last */
     int64_t samples;
 } check;
 
@@ -229,8 +230,11 @@ typedef struct run {
 
 static void check_move(check *c, const move *m, const run *travel, double height) {
     int pieces = 1 + (int)(length(minus(m->to, m->from)) / c->step);
-    for (int i = 0; i <= pieces; i++) {
+    for (int i = 1; i <= pieces; i++) {
         double t = (double)i / pieces, angle[2];
+        if (length(minus(mix(m->from, m->to, t), c->looked)) < c->step / 2)
+            continue;
+        c->looked = mix(m->from, m->to, t);
         for (int k = 0; k < 2; k++)
             angle[k] = m->before[k] + t * (m->angle[k] - m->before[k]);
         pose at = {mix(m->from, m->to, t), machine_turn(&c->machine, angle), height, m->line};
@@ -274,7 +278,7 @@ static void check_all(check *c, const moves *m, const beads *b) {
 
 int main(int count, char **word) {
     const char *gcode = NULL, *stl = NULL, *text = NULL, *kinematics = "cartesian";
-    double base[3] = {0, 0, 0}, center[2] = {100, 100}, pivot[3] = {0, 0, 0};
+    double told = 0, base[3] = {0, 0, 0}, center[2] = {100, 100}, pivot[3] = {0, 0, 0};
     check c = {.tool = {0.8, 45, 6, {-10, -10, 10, 10}, 20, {-30, -30, 30, 30}, 40},
                .machine = {.filament = 1.75},
                .step = 0.5,
@@ -284,6 +288,7 @@ int main(int count, char **word) {
                               {"", &stl, 0, NULL},
                               {"--field", &text, 0, NULL},
                               {"--kinematics", &kinematics, 0, NULL},
+                              {"--told", NULL, 0, &told},
                               {"--base", NULL, 3, base},
                               {"--center", NULL, 2, center},
                               {"--pivot", NULL, 3, pivot},
@@ -309,7 +314,8 @@ int main(int count, char **word) {
     moves way;
     beads printed;
     if ((text && !field) || !part_read(&model, stl, center[0], center[1]) ||
-        !moves_read(&way, gcode, &c.machine) || !beads_make(&printed, &way, field, &model, 0))
+        !moves_read(&way, gcode, &c.machine) ||
+        !beads_make(&printed, &way, field, &model, told != 0))
         return 2;
     make_world(&c.world, &printed);
     check_all(&c, &way, &printed);

@@ -3,6 +3,7 @@ is printed, does a printer take it, is it the same for any number of threads?
 
     test_prints.py CASE ISOSLICE VIRTUAL AUDIT COLLIDE [VOXEL]     CASE: one below, or 'all'
 """
+import math
 import pathlib
 import subprocess
 import sys
@@ -13,6 +14,7 @@ sys.path.insert(0, str(HERE.parent / "cli"))
 sys.dont_write_bytecode = True
 
 import parts  # noqa: E402
+from synthetic import tube  # noqa: E402
 from models import box, torus, turned, write_stl  # noqa: E402
 
 ISOSLICE, VIRTUAL, AUDIT, COLLIDE = sys.argv[2:6]
@@ -22,6 +24,8 @@ LIMITS = ["--volume-within", "1", "--most-underfill", "1", "--most-spill", "1"]
 WING = "((x+31.2)/60)"
 WING = f"6.4*z/(4+24*(0.2969*sqrt({WING})-0.1260*{WING}-0.3516*{WING}^2+0.2843*{WING}^3-0.1036*{WING}^4))"
 FAN = ["--field", "fan:y,-20,0,30"]
+SLANT = ["--field", f"fan:y,{-30 - (20 * math.cos(math.radians(40)) - 20) / 2:.6f},0,30"]
+MANDREL = ["--field", "cylinder:x,0,9", "--kinematics", "rotary_a"]
 
 # part, options of the slicer, options of the checks. Where layers are known by a formula (no flat base) the audit works
 # them out by itself; else it goes by where the beads are.
@@ -31,10 +35,11 @@ PRINTS = {
     "wing": [(parts.wing, ["--field", WING, "--no-field-flat-base"], ["--field", WING])],
     "wing-auto": [(parts.wing, ["--field", "auto-top"], [])],
     "dome-auto": [(parts.dome, ["--field", "auto-top"], [])],
-    "elbow": [(parts.elbow, FAN + ["--kinematics", "table_bc"],
+    "elbow": [(lambda: parts.elbow(inner=6), FAN + ["--kinematics", "table_bc"],
                FAN + ["--kinematics", "table_bc", "--pivot", "100,100,0"])],
-    "elbow-ac": [(parts.elbow, FAN + ["--kinematics", "table_ac"],
-                  FAN + ["--kinematics", "table_ac", "--pivot", "100,100,0"])],
+    "elbow-ac": [(lambda: parts.elbow(inner=6, degrees=40, rings=30), SLANT + ["--kinematics", "table_ac"],
+                  SLANT + ["--kinematics", "table_ac", "--pivot", "100,100,0"])],
+    "mandrel": [(lambda: tube(7, 9, 8, 120), MANDREL, MANDREL + ["--pivot", "100,100,9"])],
     "elbow-upright": [(lambda: parts.elbow(degrees=35, inner=6, rings=24), ["--field", "plane:-0.3,0,1"], [])],
 }
 failures = []
