@@ -24,8 +24,7 @@ static const char *const verb_help[] = {
     "Say how many triangles a model has, how large it is, and what is wrong with it.",
     "Draw layers of a G-code file as a picture.",
     "Make a model porous: as a mesh, as a volume (OpenVDB) or as G-code, with a report of its pores.",
-    "Lead cooling channels around a part: as bodies, as a mould of the part with channels in it, as a "
-    "link of their middles or as a picture.",
+    "Lead cooling channels around a part: as bodies, a mould that has them, a link or a picture.",
 };
 
 /* Exit codes and what they mean. */
