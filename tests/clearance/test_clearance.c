@@ -154,6 +154,22 @@ static void test_slope(void) {
     CHECK(!on_slope(&hit, 0, 0.2, true));
 }
 
+/* At the top of a roof the normal may be of anything: no bead stands above the nozzle's own way for
+ * that. */
+static void test_ridge(void) {
+    clearance_tool tool = scene_tool();
+    clearance_hit hit;
+    scene_start(&plan, 0.45, 0.114);
+    plan.normal = vec3_unit(vec3(-0.19, 0, 1));
+    scene_jump(&plan, -2, 0, 9.62);
+    scene_print(&plan, 0, 0, 10);
+    scene_print(&plan, 0.35, 0, 9.9335);
+    plan.move[1].from_normal = vec3_unit(vec3(-0.5, 0, 1));
+    plan.move[1].to_normal = plan.normal = vec3_unit(vec3(0.19, 0, 1));
+    scene_print(&plan, 2, 0, 9.62);
+    CHECK(!scene_check(&hit, &plan, &tool, 1000));
+}
+
 static void print_hill(double top) {
     scene_start(&plan, 0.4, 0.2);
     for (int i = 1; i <= 10; i++) {
@@ -323,6 +339,7 @@ int main(void) {
     RUN(test_turning);
     RUN(test_table);
     RUN(test_slope);
+    RUN(test_ridge);
     RUN(test_travel);
     RUN(test_ends_of_travel);
     RUN(test_order);

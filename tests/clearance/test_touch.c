@@ -80,7 +80,7 @@ static void test_sweep(void) {
         move.to = vec3(between(&state, -5, 7), between(&state, -6, 14), between(&state, -3, 8));
         move.from_normal = vec3_unit(vec3(between(&state, -1, 1), between(&state, -1, 1), 1));
         move.to_normal = vec3_unit(vec3(between(&state, -1, 1), between(&state, -1, 1), 1));
-        touch_bead bead = touch_bead_of(&move), thick = bead, thin = bead;
+        touch_bead bead = touch_bead_of(&move, false), thick = bead, thin = bead;
         thick.ball += 3e-4;
         thin.ball -= 3e-4;
         if (touch_meets(&large, &thin) == touch_meets(&large, &thick)) /* not on the border */

@@ -169,10 +169,11 @@ static iso_status enter_upright(clearance *check, const clearance_move *move,
 
 static iso_status enter_move(clearance *check, int32_t at) {
     const clearance_move *move = &check->move[at].move;
+    clearance_move bead = way_bead(move);
     if (is_bead(move))
-        ISO_TRY(beads_add(&check->beads, move, check->move[at].index));
+        ISO_TRY(beads_add(&check->beads, &bead, check->move[at].index));
     if (is_bead(move) && check->ground)
-        ISO_TRY(ground_add(check->ground, move));
+        ISO_TRY(ground_add(check->ground, &bead));
     way_section section[WAY_SECTIONS];
     int sections =
         way_sections(section, move, &check->move[at].run, check->tool.model.tip_diameter);
@@ -182,7 +183,7 @@ static iso_status enter_move(clearance *check, int32_t at) {
         else
             ISO_TRY(enter_turning(check, &check->move[at], &section[i]));
     }
-    return is_bead(move) && check->room ? room_add(check->room, move) : ISO_OK;
+    return is_bead(move) && check->room ? room_add(check->room, &bead) : ISO_OK;
 }
 
 /* Look at the first `count` of the moves that wait. */

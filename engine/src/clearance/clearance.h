@@ -4,8 +4,9 @@
  * and the gantry. Every move of the finished G-code is looked at, in order, against all beads that
  * came before it, before anything is written.
  *
- * A bead lies under the way of its move: from the tip's line down by `height` across the layer,
- * `width` wide, its sides and ends half-round.
+ * A bead lies under the way of its move: from the tip's line down by `height`, square to the line
+ * and as nearly across the layer as that allows, `width` wide, its sides and ends half-round. Its
+ * ends don't rise beyond the tip: on a slope an upper end is level, if the tool is upright.
  *
  * The tool goes along a move in a straight line and turns evenly. Block and carriage are columns
  * without an upper end, the gantry is all that is above gantry_height, along the tool's axis. Where

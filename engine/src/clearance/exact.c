@@ -206,7 +206,7 @@ static void look_at(clearance_hit *hit, bool *found, const exact_search *search,
         clearance_move earlier = beads_get(beads, i);
         if (!is_near(&earlier, box))
             continue;
-        touch_bead bead = touch_bead_of(&earlier);
+        touch_bead bead = touch_bead_of(&earlier, search->tool->model.turning == CLEARANCE_UPRIGHT);
         double reach = reach_to(piece, &earlier);
         touch_sweep sweep = piece->sweep;
         if (!shape_of(&sweep.shape, search, piece, CLEARANCE_TOLERANCE, reach) ||

@@ -1,6 +1,6 @@
 #include "clearance/touch.h"
 
-touch_bead touch_bead_of(const clearance_move *move) {
+touch_bead touch_bead_of(const clearance_move *move, bool upright) {
     /* What is narrower than high hangs in the air: its upper end is what counts. */
     double across = least_of(move->width, move->height);
     touch_bead bead = {.normal = {move->from_normal, move->to_normal},
@@ -8,6 +8,17 @@ touch_bead touch_bead_of(const clearance_move *move) {
                        .ball = across / 2};
     bead.center[0] = vec3_along(move->from, -bead.ball, move->from_normal);
     bead.center[1] = vec3_along(move->to, -bead.ball, move->to_normal);
+    iso_vec3 way = vec3_unit(vec3_minus(move->to, move->from));
+    for (int end = 0; end < 2; end++) {
+        if (fabs(vec3_dot(bead.normal[end], way)) > 1e-3)
+            continue; /* too steep to have an end; its discs are whole */
+        bead.side[end] = vec3_unit(vec3_cross(bead.normal[end], way));
+        iso_vec3 out = end ? way : vec3_times(way, -1);
+        if (upright && out.z > 0)
+            out.z = 0;
+        out = vec3_along(out, -vec3_dot(out, bead.side[end]), bead.side[end]);
+        bead.out[end] = vec3_unit(out);
+    }
     return bead;
 }
 
@@ -18,7 +29,17 @@ iso_vec3 touch_sweep_support(const touch_sweep *sweep, iso_vec3 direction) {
 }
 
 static iso_vec3 disc_support(const touch_bead *bead, int end, iso_vec3 direction) {
-    iso_vec3 normal = bead->normal[end];
+    iso_vec3 normal = bead->normal[end], side = bead->side[end];
+    if (vec3_dot(side, side) > 0.5) {
+        double along = vec3_dot(direction, side);
+        double out = most_of(0, vec3_dot(direction, bead->out[end]));
+        double size = along * along + out * out;
+        if (size <= 1e-20 * vec3_dot(direction, direction))
+            return bead->center[end];
+        double scale = bead->disc / sqrt(size);
+        iso_vec3 at = vec3_along(bead->center[end], along * scale, side);
+        return vec3_along(at, out * scale, bead->out[end]);
+    }
     iso_vec3 across = vec3_along(direction, -vec3_dot(direction, normal), normal);
     /* What rounding leaves of a direction straight up may point anywhere. */
     double size = vec3_dot(across, across);

@@ -9,13 +9,16 @@
 
 #include "clearance/tool.h"
 
-/* The hull of two discs, and all that is no more than `ball` from it. */
+/* The hull of two half discs, and all that is no more than `ball` from it. A half disc is spanned
+ * by a diameter along `side` and a radius along `out`; a bead without length, or one that goes
+ * straight up, has whole discs. */
 typedef struct touch_bead {
-    iso_vec3 center[2], normal[2];
+    iso_vec3 center[2], normal[2], side[2], out[2];
     double disc, ball; /* radii */
 } touch_bead;
 
-touch_bead touch_bead_of(const clearance_move *move);
+/* The tool was upright or not: ends don't rise above what the tip leaves beneath itself. */
+touch_bead touch_bead_of(const clearance_move *move, bool upright);
 
 /* Between two poses of the tool. */
 typedef struct touch_sweep {

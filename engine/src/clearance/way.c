@@ -59,3 +59,20 @@ int way_sections(way_section section[WAY_SECTIONS], const clearance_move *move, 
     }
     return count;
 }
+
+static iso_vec3 square_to(iso_vec3 normal, iso_vec3 way, double length) {
+    iso_vec3 rest = vec3_along(normal, -vec3_dot(normal, way) / length, way);
+    /* A line straight up has no side that is above. */
+    return vec3_dot(rest, rest) > 0.25 ? vec3_unit(rest) : normal;
+}
+
+clearance_move way_bead(const clearance_move *move) {
+    clearance_move bead = *move;
+    iso_vec3 way = vec3_minus(move->to, move->from);
+    double length = vec3_dot(way, way);
+    if (length > 0) {
+        bead.from_normal = square_to(move->from_normal, way, length);
+        bead.to_normal = square_to(move->to_normal, way, length);
+    }
+    return bead;
+}

@@ -23,6 +23,10 @@ enum { WAY_SECTIONS = 5 };
 int way_sections(way_section section[WAY_SECTIONS], const clearance_move *move, const way_run *run,
                  double tip_diameter);
 
+/* The bead of a move, with normals that are square to its line: at a sharp ridge the layer's may be
+ * of either side, but the nozzle leaves nothing above its own way. */
+clearance_move way_bead(const clearance_move *move);
+
 static inline bool is_bead(const clearance_move *move) {
     return move->width > 0 && move->height > 0;
 }
