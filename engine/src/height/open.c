@@ -57,6 +57,8 @@ iso_status iso_field_open(iso_field **field, const char *text, const iso_mesh *m
     words w = trimmed(text);
     if (is(w, "geodesic"))
         return height_new_geodesic(field, mesh, count);
+    if (is(w, "auto-top"))
+        return height_new_auto_top(field, mesh, count, slope);
     if (w.length >= sizeof distance_prefix - 1 &&
         memcmp(w.text, distance_prefix, sizeof distance_prefix - 1) == 0)
         return open_distance(field, w, origin);
