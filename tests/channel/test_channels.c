@@ -427,10 +427,15 @@ static void test_a_slot_is_passed_by(void) {
     iso_mesh_free(&mesh);
 }
 
-int main(void) {
+static void test_bodies(void) {
     RUN(test_closed_rings_of_every_section);
     RUN(test_ports_on_every_side);
     RUN(test_pointwise_rings);
+    RUN(test_the_same_bytes_again);
+    RUN(test_no_memory);
+}
+
+static void test_rings(void) {
     RUN(test_a_section_faces_the_part);
     RUN(test_the_depth);
     RUN(test_rings_are_iso_slices_of_the_square_link);
@@ -439,7 +444,13 @@ int main(void) {
     RUN(test_geodesic_rings_go_over_the_top);
     RUN(test_an_angle_is_followed_into_its_corner);
     RUN(test_a_slot_is_passed_by);
-    RUN(test_the_same_bytes_again);
-    RUN(test_no_memory);
+}
+
+/* All of them, or those that are named. */
+int main(int argc, char **argv) {
+    if (argc < 2 || strcmp(argv[1], "bodies") == 0)
+        test_bodies();
+    if (argc < 2 || strcmp(argv[1], "rings") == 0)
+        test_rings();
     return check_verdict();
 }
