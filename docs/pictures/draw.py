@@ -65,6 +65,7 @@ def main():
         run("sh", ROOT / script, PROGRAM, FOLDER)
     run(sys.executable, "-B", ROOT / "docs/pictures/draw_channels.py", PROGRAM, FOLDER)
     run(sys.executable, "-B", ROOT / "docs/pictures/draw_fields.py", PROGRAM, FOLDER)
+    run(sys.executable, "-B", ROOT / "docs/pictures/draw_curved.py", PROGRAM, FOLDER)
     run(sys.executable, "-B", ROOT / "docs/pictures/draw_lattices.py", PROGRAM, FOLDER,
         *sys.argv[4:])
 

@@ -54,6 +54,13 @@ def turned(profile, sides=48, lobes=0, depth=0.0, twist=0.0):
     return triangles
 
 
+def dome(radius=14, rim=9, curvature=60, sides=48):
+    """A cylinder whose top is a piece of a sphere; its foot's middle is at 0, 0, 0."""
+    below = rim - math.sqrt(curvature ** 2 - radius ** 2)
+    top = [below + math.sqrt(curvature ** 2 - r ** 2) for r in (*range(radius, 0, -2), 0.2)]
+    return turned([(radius, 0), *zip((*range(radius, 0, -2), 0.2), top)], sides)
+
+
 def moved(triangles, x, y, z=0):
     return [[(p[0] + x, p[1] + y, p[2] + z) for p in triangle] for triangle in triangles]
 
