@@ -43,6 +43,7 @@
 #define CLOSE 0.003
 
 enum {
+    MOST_TERMS = 16,   /* control points that a value is of */
     SPAN = 7,          /* points in a row that share cells with one */
     SLOTS = 4 * SPAN,  /* of the lower half of a matrix's row */
     FEW = 12,          /* one top in so many that isn't followed is no reason to doubt any */
@@ -105,23 +106,31 @@ typedef struct fit {
 
 // The matrix
 
-static void add_to(fit *f, int32_t a, int32_t b, double value) {
-    int32_t row = a > b ? a : b, column = a > b ? b : a, columns = f->s->columns;
-    int32_t down = row / columns - column / columns, across = column % columns - row % columns;
-    f->system.matrix[(int64_t)SLOTS * row + SPAN * down + across + SPAN / 2] += value;
+static void add_to(fit *f, int32_t point, double value) {
+    f->system.matrix[(int64_t)SLOTS * point + SPAN / 2] += value;
 }
 
-/* Square of a sum of control points, less `right`. */
+/* Square of a sum of control points, at most MOST_TERMS, less `right`. */
 static void add_square(fit *f, const int32_t *point, const double *share, int count, double weight,
                        double right) {
-    for (int i = 0; i < count; i++) {
+    int32_t columns = f->s->columns, row[MOST_TERMS], slot[MOST_TERMS];
+    for (int i = 0; i < count;
+         i++) { /* a point's slot in its own row of the matrix grows with it */
+        row[i] = point[i] / columns;
+        slot[i] = SPAN * row[i] - (point[i] - columns * row[i]);
         f->system.right[point[i]] += weight * right * share[i];
+    }
+    for (int i = 0; i < count; i++)
         for (int j = 0; j <= i; j++) {
             double value = weight * share[i] * share[j];
-            /* both halves of a place that two different terms share by clamping are one */
-            add_to(f, point[i], point[j], j < i && point[i] == point[j] ? 2 * value : value);
+            int high = point[i] >= point[j] ? i : j, low = i + j - high;
+            /* two terms that are one point where the grid ends: both halves of the matrix are one
+             */
+            if (j < i && point[i] == point[j])
+                value *= 2;
+            f->system.matrix[(int64_t)SLOTS * point[high] + slot[high] - slot[low] + SPAN / 2] +=
+                value;
         }
-    }
 }
 
 /* How the slope of F along a top depends on h. */
@@ -168,7 +177,7 @@ static void add_smoothness(fit *f) {
                 add_square(f, y, first, 2, flat, 0);
             if (i + 1 < columns && j + 1 < rows)
                 add_square(f, square, cross, 4, 2 * bend, 0);
-            add_to(f, k, k, THICKNESS * rise * rise);
+            add_to(f, k, THICKNESS * rise * rise);
         }
 }
 
@@ -254,7 +263,7 @@ static void add_penalties(fit *f) {
                 add_square(f, point, along_y, 9, weight, 0);
             }
             if (f->held[k] & HOLD_HEIGHT)
-                add_to(f, k, k, OF_HEIGHT);
+                add_to(f, k, OF_HEIGHT);
         }
 }
 
