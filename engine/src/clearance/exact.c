@@ -4,8 +4,12 @@
 #include "clearance/touch.h"
 
 /* Between the poses it is cut into a turning tool is taken to move straight. What is no more than
- * 200 mm from the tip is off by less than 0.002 mm then. */
-#define TURN 0.0089 /* radians, about */
+ * 200 mm from the tip, or of the nozzle, is off by no more than this then. */
+#define TURN_TOLERANCE 0.002 /* mm */
+#define TURN_REACH 200.0     /* mm */
+
+/* Slabs are worth their number where much of the nozzle is in doubt. */
+#define SLABS_FROM 4.0 /* mm */
 
 enum { SLABS = 4, PARTS_MOST = SLABS + TOOL_PARTS - 1, BATCH = 64 };
 
@@ -52,11 +56,15 @@ static double reach_to(const exact_piece *piece, const clearance_move *bead) {
     return far + bead->width + bead->height + 1;
 }
 
-/* By how much a move turns, in pieces. */
-static double turns_of(const exact_search *search, const clearance_move *move) {
-    if (search->tool->model.turning == CLEARANCE_UPRIGHT)
+/* Into how many pieces a part of the tool cuts a move that it turns on, all of it. */
+static double turns_of(const exact_search *search, const clearance_move *move, tool_part part) {
+    const tool_body *tool = search->tool;
+    if (tool->model.turning == CLEARANCE_UPRIGHT)
         return 0;
-    return vec3_distance(vec3_unit(move->from_normal), vec3_unit(move->to_normal)) / TURN;
+    double reach = TURN_REACH;
+    if (part == TOOL_NOZZLE)
+        reach = tool->model.tip_diameter / 2 + tool->model.cone_height * tool->secant;
+    return vec3_distance(move->from_normal, move->to_normal) / sqrt(8 * TURN_TOLERANCE / reach);
 }
 
 /* A question: the box of a sweep, as far as there is doubt. */
@@ -108,24 +116,38 @@ static iso_status make_room(exact_search *search) {
     return ISO_OK;
 }
 
-/* All parts of the tool along a piece of a move. */
-static iso_status enter_piece(exact_search *search, int32_t move, const tool_pose pose[2],
-                              double raise, double reach) {
+/* A part of the tool along a piece of a move. */
+static iso_status enter_piece(exact_search *search, const exact_piece *piece, double reach) {
     ISO_TRY(make_room(search));
-    for (int part = 0; part < TOOL_PARTS; part++) {
-        exact_piece *piece = search->piece + search->piece_count;
-        *piece = (struct exact_piece){.raise = raise, .part = (tool_part)part, .move = move};
-        piece->sweep.pose[0] = pose[0];
-        piece->sweep.pose[1] = pose[1];
-        if (!(search->move[move].doubt.parts >> part & 1) ||
-            !tool_shape_of(&piece->sweep.shape, search->tool, piece->part,
-                           (double[]){raise, CLEARANCE_TOLERANCE}, reach))
-            continue;
-        int32_t index = (int32_t)search->piece_count++;
-        if (part == TOOL_NOZZLE)
-            enter_slabs(search, &piece->sweep, index);
-        else
-            ask(search, &piece->sweep, index);
+    int32_t index = (int32_t)search->piece_count;
+    exact_piece *entered = search->piece + index;
+    *entered = *piece;
+    if (!tool_shape_of(&entered->sweep.shape, search->tool, piece->part,
+                       (double[]){piece->raise, CLEARANCE_TOLERANCE}, reach))
+        return ISO_OK;
+    search->piece_count++;
+    const ground_doubt *doubt = &search->move[piece->move].doubt;
+    if (piece->part == TOOL_NOZZLE && doubt->high.z - doubt->low.z > SLABS_FROM)
+        enter_slabs(search, &entered->sweep, index);
+    else
+        ask(search, &entered->sweep, index);
+    return ISO_OK;
+}
+
+static iso_status enter_section(exact_search *search, int32_t at, const way_section *section,
+                                tool_part part, double reach) {
+    const clearance_move *move = &search->move[at].move;
+    double length = section->to - section->from;
+    int count = 1 + (int)(turns_of(search, move, part) * length);
+    exact_piece piece = {.raise = section->raise, .part = part, .move = at};
+    tool_pose *pose = piece.sweep.pose;
+    for (int k = 0; k <= count; k++) {
+        double t = section->from + length * k / count;
+        pose[0] = pose[1];
+        pose[1] = tool_pose_at(search->tool, vec3_between(move->from, move->to, t),
+                               vec3_between(move->from_normal, move->to_normal, t));
+        if (k > 0)
+            ISO_TRY(enter_piece(search, &piece, reach));
     }
     return ISO_OK;
 }
@@ -135,20 +157,10 @@ static iso_status enter_move(exact_search *search, int32_t at) {
     way_section section[WAY_SECTIONS];
     int sections = way_sections(section, &move->move, &move->run, search->tool->model.tip_diameter);
     double reach = reach_of(search->beads, &move->move);
-    double turns = turns_of(search, &move->move);
-    for (int i = 0; i < sections; i++) {
-        double length = section[i].to - section[i].from;
-        int count = 1 + (int)(turns * length);
-        tool_pose pose[2];
-        for (int k = 0; k <= count; k++) {
-            double t = section[i].from + length * k / count;
-            pose[0] = pose[1];
-            pose[1] = tool_pose_at(search->tool, vec3_between(move->move.from, move->move.to, t),
-                                   vec3_between(move->move.from_normal, move->move.to_normal, t));
-            if (k > 0)
-                ISO_TRY(enter_piece(search, at, pose, section[i].raise, reach));
-        }
-    }
+    for (int i = 0; i < sections; i++)
+        for (int part = 0; part < TOOL_PARTS; part++)
+            if (move->doubt.parts >> part & 1)
+                ISO_TRY(enter_section(search, at, &section[i], (tool_part)part, reach));
     return ISO_OK;
 }
 
