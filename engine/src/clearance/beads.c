@@ -70,6 +70,21 @@ int64_t beads_move(const bead_store *beads, int64_t i) {
     return beads->block[i / BEADS_BLOCK][i % BEADS_BLOCK].move;
 }
 
+bool beads_near(const bead_store *beads, int64_t i, const float box[6]) {
+    const bead_packed *bead = &beads->block[i / BEADS_BLOCK][i % BEADS_BLOCK];
+    /* um: nothing of a bead is farther from its line than its height and half its width. */
+    int32_t around = (bead->width & ~DOWN) / 2 + (bead->height & ~DOWN) + 2;
+    double most = around * (ISO_UNITS_PER_MM / 1000.0);
+    for (int k = 0; k < 3; k++) {
+        int32_t low = bead->from[k] < bead->to[k] ? bead->from[k] : bead->to[k];
+        int32_t high = bead->from[k] < bead->to[k] ? bead->to[k] : bead->from[k];
+        if (low - most > (double)box[3 + k] * ISO_UNITS_PER_MM ||
+            high + most < (double)box[k] * ISO_UNITS_PER_MM)
+            return false;
+    }
+    return true;
+}
+
 clearance_move beads_get(const bead_store *beads, int64_t i) {
     const bead_packed *bead = &beads->block[i / BEADS_BLOCK][i % BEADS_BLOCK];
     return (clearance_move){place_of(bead->from),

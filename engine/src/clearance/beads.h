@@ -50,6 +50,9 @@ iso_status beads_add(bead_store *beads, const clearance_move *move, int64_t inde
 clearance_move beads_get(const bead_store *beads, int64_t i);
 int64_t beads_move(const bead_store *beads, int64_t i); /* that left it */
 
+/* May bead i meet a box? For sure not, if not: without unpacking it. */
+bool beads_near(const bead_store *beads, int64_t i, const float box[6]);
+
 /* The box around a bead. */
 void beads_box(double low[3], double high[3], const clearance_move *bead);
 

@@ -215,6 +215,8 @@ static void look_at(clearance_hit *hit, bool *found, const exact_search *search,
     for (int64_t i = beads->first[pair.box]; i < beads->first[pair.box + 1]; i++) {
         if (beads_move(beads, i) >= move->index)
             return;
+        if (!beads_near(beads, i, box))
+            continue;
         clearance_move earlier = beads_get(beads, i);
         if (!is_near(&earlier, box))
             continue;
