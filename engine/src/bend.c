@@ -6,6 +6,7 @@
 #include "config/settings.h"
 #include "config/settings_machine.h"
 #include "field/field.h"
+#include "gentle.h"
 
 /* ---- the tool ---- */
 
@@ -31,8 +32,13 @@ static void find_pivot(iso_bend *bend, const iso_curved *curved, iso_point by) {
     bend->machine.pivot = vec3_plus(shape.center, vec3(iso_mm(by.x), iso_mm(by.y), 0));
 }
 
-iso_status bend_begin(iso_bend *bend, const iso_options *options, iso_gcode_options *gcode,
-                      const iso_curved *curved, iso_point by) {
+/* Of what is around a print only what lies on the bed is sure to be low. */
+static bool is_low(const iso_options *options) {
+    return options->draft_shield == ISO_SHIELD_DISABLED && options->skirt_height <= 1;
+}
+
+iso_status bend_begin(iso_bend *bend, iso_gcode_options *gcode, const iso_options *options,
+                      const iso_curved *curved, iso_point by, bool alone) {
     bend->on = true;
     bend->options = options;
     bend->copy = -1;
@@ -42,6 +48,8 @@ iso_status bend_begin(iso_bend *bend, const iso_options *options, iso_gcode_opti
     if (!options->check_clearance)
         return ISO_OK;
     bend->tool = settings_of_tool(options);
+    if (alone && is_low(options) && gentle_is_free(curved, &bend->tool, options->field_tolerance))
+        return ISO_OK;
     gcode->watch = watch;
     gcode->watch_payload = bend;
     return clearance_new(&bend->clearance, &bend->tool);

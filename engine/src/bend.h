@@ -23,9 +23,9 @@ typedef struct iso_bend {
 } iso_bend;
 
 /* Before anything is printed; `gcode` gets what the writer has to know. `curved` is the first
- * copy's, which stands at `by`. */
-iso_status bend_begin(iso_bend *bend, const iso_options *options, iso_gcode_options *gcode,
-                      const iso_curved *curved, iso_point by) ISO_MUST_CHECK;
+ * copy's, which stands at `by`; `alone`: there is no other. */
+iso_status bend_begin(iso_bend *bend, iso_gcode_options *gcode, const iso_options *options,
+                      const iso_curved *curved, iso_point by, bool alone) ISO_MUST_CHECK;
 void bend_free(iso_bend *bend);
 
 /* What must not touch the print; NULL: nobody asks. */

@@ -96,8 +96,11 @@ static iso_status make(iso_curved *curved, iso_report *report, const iso_options
     ISO_TRY(check_options(options));
     if (options->field_flat_base && !turns(options) && kind != ISO_FIELD_AUTO_TOP)
         ISO_TRY(footing_blend(&curved->field, report, options, object));
-    iso_vec3 box[2] = {object->min, object->max};
+    const iso_vec3 bead = {1, 1, 1};
     double range[2];
+    curved->box[0] = vec3_minus(object->min, bead);
+    curved->box[1] = vec3_plus(object->max, bead);
+    const iso_vec3 box[2] = {object->min, object->max};
     ISO_TRY(field_range(range, curved->field, object->mesh, object->mesh_count));
     curved->low = range[0];
     curved->high = range[1];
@@ -141,7 +144,8 @@ static iso_status spread_levels(iso_levels *levels, const iso_curved *curved) {
     return status;
 }
 
-iso_status curved_levels(iso_levels *levels, const iso_curved *curved, const iso_options *options) {
+static iso_status make_levels(iso_levels *levels, const iso_curved *curved,
+                              const iso_options *options) {
     double height[ISO_NUMBERS_MAX + 1], span = curved->high - curved->low;
     int32_t count = iso_options_heights(height, options), kept = 1;
     if (!are_even(curved, options))
@@ -160,6 +164,14 @@ iso_status curved_levels(iso_levels *levels, const iso_curved *curved, const iso
         levels->top[i] = below + (levels->top[i] - below) * factor;
         levels->height[i] *= factor;
     }
+    return ISO_OK;
+}
+
+iso_status curved_levels(iso_levels *levels, iso_curved *curved, const iso_options *options) {
+    ISO_TRY(make_levels(levels, curved, options));
+    curved->thinnest = INFINITY;
+    for (int32_t i = 0; i < levels->count; i++)
+        curved->thinnest = fmin(curved->thinnest, levels->height[i]);
     return ISO_OK;
 }
 

@@ -18,6 +18,8 @@ typedef struct iso_curved {
     chart *chart;
     spread spread;    /* whether layers merge where the field crowds them */
     double low, high; /* of the field on the object's meshes; heights of levels count from `low` */
+    iso_vec3 box[2];  /* of the object, and of beads that stand out of it */
+    double thinnest;  /* of the layers, in F */
     double margin;    /* mm that a chart which wraps shows beyond its ends */
 } iso_curved;
 
@@ -33,7 +35,7 @@ static inline bool curved_is_flat(const iso_curved *curved) {
 
 /* Levels from the lowest value to the highest, the last one ending there: all but a first one on
  * the bed are made a little thicker or thinner for it. */
-iso_status curved_levels(iso_levels *levels, const iso_curved *curved,
+iso_status curved_levels(iso_levels *levels, iso_curved *curved,
                          const iso_options *options) ISO_MUST_CHECK;
 
 /* A mesh's slices, in the chart. */

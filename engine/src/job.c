@@ -471,7 +471,8 @@ static iso_status begin_output(iso_job *job, const char *path) {
         const iso_instance *instance = &job->plate.instances.instance[i];
         const iso_curved *curved = &job->stack[instance->object].curved;
         if (!curved_is_flat(curved))
-            ISO_TRY(bend_begin(&job->bend, job->options, &gcode, curved, instance->by));
+            ISO_TRY(bend_begin(&job->bend, &gcode, job->options, curved, instance->by,
+                               job->plate.instances.count == 1));
     }
     ISO_TRY(iso_output_open(&job->output, path));
     ISO_TRY(iso_gcode_writer_new(&job->writer, job->output, &gcode));
