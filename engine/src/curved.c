@@ -74,9 +74,11 @@ static iso_status plan_spread(iso_curved *curved, const iso_options *options,
 static iso_status check_options(const iso_options *options) {
     if (options->adaptive_layers)
         return iso_fail(ISO_BAD_CONFIG,
-                        "adaptive_layers: layers of a field are as thick as the field says");
+                        "adaptive_layers: layers of a field are as thick as the field says; leave "
+                        "one of the two out");
     if (options->spiral_vase)
-        return iso_fail(ISO_BAD_CONFIG, "spiral_vase: not with layers of a field");
+        return iso_fail(ISO_BAD_CONFIG,
+                        "spiral_vase: not with layers of a field; leave one of the two out");
     return ISO_OK;
 }
 

@@ -239,8 +239,8 @@ iso_status clearance_check(clearance_hit *hit, bool *found, clearance *check, bo
 iso_status clearance_refuse(const clearance_hit *hit) {
     const char *advice =
         hit->part[0] == 'n'
-            ? "make the field less steep, print this sooner, or see clearance_tip, clearance_cone"
-            : "print this sooner, make the field less steep, or see clearance_block, "
+            ? "make the field less steep or layers thicker, or see clearance_tip, clearance_cone"
+            : "make the field less steep, or see clearance_block, "
               "clearance_carriage, clearance_gantry_height";
     return iso_fail(ISO_NOT_VERIFIED,
                     "the %s would touch what is printed: with the nozzle at (%.3f, %.3f, %.3f) mm "

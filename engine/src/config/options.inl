@@ -183,9 +183,10 @@ ISO_OPTION(
     "Choose the height of every layer by the slope of the surface: between min_layer_height and max_layer_height, as thick as cusp_height allows.")
 ISO_OPTION(cusp_height, NUMBER, "0.05", "mm", 0.001, 1, "Layers",
            "Largest distance between the steps of adaptive layers and the true surface.")
-ISO_OPTION(min_layer_height, NUMBER, "0.07", "mm", 0.01, 5, "Layers", "Thinnest adaptive layer.")
+ISO_OPTION(min_layer_height, NUMBER, "0.07", "mm", 0.01, 5, "Layers",
+           "Thinnest adaptive layer, and thinnest place of a curved one.")
 ISO_OPTION(max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
-           "Thickest adaptive layer; 0 takes 75% of nozzle_diameter.")
+           "Thickest adaptive layer, and thickest place of a curved one; 0 takes 75% of nozzle_diameter, for curved ones up to 1.5 times layer_height.")
 
 ISO_OPTION(
     field, TEXT, "", "", 0, 0, "Curved layers",
@@ -197,10 +198,10 @@ ISO_OPTION(field_base, NUMBER, "0", "mm", 0, 10000, "Curved layers",
            "Height up to which layers stay flat before they begin to bend.")
 ISO_OPTION(
     field_blend, NUMBER, "0", "mm", 0, 10000, "Curved layers",
-    "Height over which flat layers bend into curved ones; 0: five times as much as they bend, so that none gets a third thinner or thicker.")
+    "Height over which flat layers bend into curved ones; 0: two and a half times as much as they bend, so that none gets a quarter thinner or half as thick again.")
 ISO_OPTION(
     field_slope, NUMBER, "40", "deg", 0, 89, "Curved layers",
-    "Steepest that a layer may lie where the nozzle always points down; steeper ones are refused. Layers of auto-top keep to it.")
+    "Steepest that a layer may lie where the nozzle always points down; steeper ones are refused, and less steep ones too where the nozzle's tip or side is in the way. Layers of auto-top keep to it.")
 ISO_OPTION(field_tolerance, NUMBER, "0.02", "mm", 0.001, 1, "Curved layers",
            "How far lines may be off the curved layer they stand for.")
 ISO_OPTION(

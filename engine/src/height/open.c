@@ -1,5 +1,6 @@
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -51,8 +52,8 @@ static iso_status open_distance(iso_field **field, words w, iso_vec3 origin) {
     return status;
 }
 
-iso_status iso_field_open(iso_field **field, const char *text, const iso_mesh *mesh, int32_t count,
-                          double slope, iso_vec3 origin) {
+static iso_status open_text(iso_field **field, const char *text, const iso_mesh *mesh,
+                            int32_t count, double slope, iso_vec3 origin) {
     *field = NULL;
     words w = trimmed(text);
     if (is(w, "geodesic"))
@@ -63,4 +64,14 @@ iso_status iso_field_open(iso_field **field, const char *text, const iso_mesh *m
         memcmp(w.text, distance_prefix, sizeof distance_prefix - 1) == 0)
         return open_distance(field, w, origin);
     return iso_field_new(field, text);
+}
+
+iso_status iso_field_open(iso_field **field, const char *text, const iso_mesh *mesh, int32_t count,
+                          double slope, iso_vec3 origin) {
+    iso_status status = open_text(field, text, mesh, count, slope, origin);
+    if (status != ISO_BAD_CONFIG)
+        return status;
+    char message[512]; /* of iso_fail, which is about to overwrite it */
+    snprintf(message, sizeof message, "%s", iso_error_message());
+    return iso_fail(status, "field: %s", message);
 }

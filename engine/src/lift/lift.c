@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/series.h"
 #include "base/vector.h"
 #include "lift/sample.h"
 #include "lift/task.h"
@@ -52,12 +53,15 @@ static iso_status sample_paths(samples *s, const iso_paths *flat, iso_arena *are
 /* ---- what a printer is able to ---- */
 
 static iso_status too_steep(const lift_task *t, const chart_point *p) {
+    const double degree = 180 / 3.14159265358979323846;
     double z = p->normal.z, across = sqrt(fmax(0, 1 - z * z));
-    return iso_fail(ISO_OUTSIDE,
-                    "at x %.3f y %.3f z %.3f mm (from the middle of the object and its foot) a "
-                    "layer rises by %.3f mm on 1 mm, more than the nozzle is allowed to follow "
-                    "(%.3f): choose a flatter field, or a larger field_slope",
-                    p->at.x, p->at.y, p->at.z, z > 0 ? across / z : HUGE_VAL, t->options->slope);
+    return iso_fail(
+        ISO_OUTSIDE,
+        "at x %.3f y %.3f z %.3f mm (from the middle of the object and its foot) a "
+        "layer is %.1f degrees steep, more than the nozzle is allowed to follow (%.1f): "
+        "choose a flatter field, or a larger field_slope",
+        p->at.x, p->at.y, p->at.z, degree * series_arctangent2(across, z),
+        degree * series_arctangent(t->options->slope));
 }
 
 static iso_status wrong_thickness(const lift_task *t, const chart_point *p, double thickness) {
