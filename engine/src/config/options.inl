@@ -202,7 +202,7 @@ ISO_OPTION(
 ISO_OPTION(
     field_slope, NUMBER, "40", "deg", 0, 89, "Curved layers",
     "Steepest that a layer may lie where the nozzle always points down; steeper ones are refused, and less steep ones too where the nozzle's tip or side is in the way. Layers of auto-top keep to it.")
-ISO_OPTION(field_tolerance, NUMBER, "0.02", "mm", 0.001, 1, "Curved layers",
+ISO_OPTION(field_tolerance, NUMBER, "0.01", "mm", 0.001, 1, "Curved layers",
            "How far lines may be off the curved layer they stand for.")
 ISO_OPTION(
     check_clearance, BOOL, "1", "", 0, 1, "Curved layers",
