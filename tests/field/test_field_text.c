@@ -1,6 +1,8 @@
 /* What is said of texts that are no fields. */
 #include "field/fields.h"
 
+#include "base/memory.h"
+
 static void test_mistakes(void) {
     static const struct {
         const char *text, *message;
@@ -78,8 +80,25 @@ static void test_spellings(void) {
     }
 }
 
+/* A root of more squares than the stack could be walked down along. */
+static void test_long_sum(void) {
+    enum { SQUARES = 200000, START = 5, EACH = 4 };
+    char *text;
+    CHECK_OK(ISO_ALLOCATE(text, START + EACH * SQUARES + 1));
+    memcpy(text, "sqrt(", START);
+    for (int32_t i = 0; i < SQUARES; i++)
+        memcpy(text + START + (int64_t)EACH * i, "x*x+", EACH);
+    memcpy(text + START + (int64_t)EACH * SQUARES - 1, ")", 2);
+    iso_field *field = field_of(text);
+    CHECK_NEAR(3 * sqrt(SQUARES), value_at(field, (iso_vec3){-3, 1, 2}), 1e-6);
+    CHECK_NEAR(-sqrt(SQUARES), gradient_at(field, (iso_vec3){-3, 1, 2}).x, 1e-6);
+    iso_field_free(field);
+    iso_release(text);
+}
+
 int main(void) {
     RUN(test_mistakes);
     RUN(test_spellings);
+    RUN(test_long_sum);
     return check_verdict();
 }

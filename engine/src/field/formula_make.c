@@ -67,21 +67,22 @@ static bool is_number(const graph *g, int32_t a, double number) {
     return is(g, a, FORMULA_CONSTANT) && g->node[a].number == number;
 }
 
-/* The squares that a sum is of, 1 to 3; 0: it isn't such a sum. */
-static int32_t squares_of(int32_t of[3], const graph *g, int32_t sum) {
+/* The squares that a sum is of, 1 to `most`; 0: it isn't such a sum. Long ones aren't followed to
+ * their end, which may be deeper than the stack. */
+static int32_t squares_of(int32_t of[3], const graph *g, int32_t sum, int32_t most) {
     const node *top = &g->node[sum];
     if (top->operation == OPERATION_SQUARE) {
         of[0] = top->from[0];
         return 1;
     }
-    if (top->operation != OPERATION_ADD)
+    if (top->operation != OPERATION_ADD || most < 2)
         return 0;
     int32_t left[3], right[3];
     const node *a = &g->node[top->from[0]], *b = &g->node[top->from[1]];
     bool deep = a->operation == OPERATION_ADD && b->operation == OPERATION_ADD;
-    int32_t m = deep ? 0 : squares_of(left, g, top->from[0]);
-    int32_t n = m == 0 ? 0 : squares_of(right, g, top->from[1]);
-    if (m == 0 || n == 0 || m + n > 3)
+    int32_t m = deep ? 0 : squares_of(left, g, top->from[0], most - 1);
+    int32_t n = m == 0 ? 0 : squares_of(right, g, top->from[1], most - 1);
+    if (m == 0 || n == 0 || m + n > most)
         return 0;
     for (int32_t i = 0; i < m; i++)
         of[i] = left[i];
@@ -105,7 +106,7 @@ static int32_t add_simplified(graph *g, node made) {
     }
     int32_t of[3], squares = 0;
     if (made.operation == OPERATION_SQRT)
-        squares = squares_of(of, g, a);
+        squares = squares_of(of, g, a, 3);
     if (squares > 0) {
         made = node_of(squares == 1   ? OPERATION_ABS
                        : squares == 2 ? OPERATION_HYPOT
