@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include "base/memory.h"
+#include "slice/search.h"
 
 #include <isoslice/slice.h>
 
@@ -73,6 +74,22 @@ static void test_list_of_heights(void) {
     }
 }
 
+/* Whatever their spacing: even none that a proportion could be made of. */
+static void test_search(void) {
+    static const double even[] = {0, 1, 2, 3, 4}, uneven[] = {-1e9, 0, 1e-9, 7, 1e12},
+                        same[] = {1, 1, 1, 1, 1}, next[] = {0, 5e-324, 1e-323, 1.5e-323, 2e-323};
+    static const double *const levels[] = {even, uneven, same, next};
+    static const double at[] = {-INFINITY, -1e9, -1,  0,   5e-324, 1e-323, 1e-9,
+                                0.5,       1,    2.5, 6.9, 1e12,   2e12,   INFINITY};
+    for (size_t k = 0; k < sizeof levels / sizeof *levels; k++)
+        for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+            int32_t first = 0;
+            while (first < 5 && levels[k][first] < at[i])
+                first++;
+            CHECK_EQUAL(first, levels_first_at(levels[k], 5, levels_scale(levels[k], 5), at[i]));
+        }
+}
+
 static void test_nonsense(void) {
     static const double bad[] = {0, -1, NAN, INFINITY};
     iso_levels levels;
@@ -100,6 +117,7 @@ int main(void) {
     RUN(test_count);
     RUN(test_no_drift);
     RUN(test_list_of_heights);
+    RUN(test_search);
     RUN(test_nonsense);
     RUN(test_allocation_failures);
     return check_verdict();
