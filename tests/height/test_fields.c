@@ -164,6 +164,38 @@ static void test_sides_at_corners(void) {
     iso_field_free(field);
 }
 
+static double volume_of(iso_vec3 a, iso_vec3 b, iso_vec3 c, iso_vec3 d) {
+    return vec3_dot(vec3_cross(vec3_minus(b, a), vec3_minus(c, a)), vec3_minus(d, a));
+}
+
+/* Past the tip of a needle, from where some of its sides are seen from behind. */
+static void test_side_at_tip(void) {
+    const iso_vec3 v[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {6, 7, 8}};
+    const int side[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    shape s = {0};
+    iso_field *field;
+    for (int i = 0; i < 4; i++) {
+        shape_point p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = (shape_point){v[side[i][k]].x, v[side[i][k]].y, v[side[i][k]].z};
+        shape_add(&s, p[0], p[1], p[2]);
+    }
+    if (!open_shape(&field, &s, nowhere))
+        return;
+    int wrong = 0;
+    for (int i = 0; i < 20000; i++) {
+        iso_vec3 p = i % 2 ? vec3_plus(v[3], any_point(2)) : vec3_times(any_point(4), 2);
+        double value;
+        int within = 1;
+        iso_field_evaluate(&value, NULL, field, &p, 1);
+        for (int k = 0; k < 4; k++)
+            within &= volume_of(v[side[k][0]], v[side[k][1]], v[side[k][2]], p) < 0;
+        wrong += within != (value < 0);
+    }
+    CHECK_EQUAL(0, wrong);
+    iso_field_free(field);
+}
+
 static void test_geodesic_field(void) {
     shape s = {0};
     iso_mesh mesh;
@@ -290,6 +322,7 @@ int main(void) {
     RUN(test_box);
     RUN(test_ball_and_ring);
     RUN(test_sides_at_corners);
+    RUN(test_side_at_tip);
     RUN(test_geodesic_field);
     RUN(test_files);
     RUN(test_memory);
