@@ -77,21 +77,37 @@ def section(layers, middle, name):
     return drawn
 
 
-def draw_sections(work):
-    rows = []
-    for name, title, options in (("flat", "field = z", []), ("curved", f"field = {FIELD}", ["--field", FIELD])):
-        run(PROGRAM, "-q", work / "dome.stl", "-o", work / f"{name}.gcode", *PRINT, "--fill-density", "100%",
-            "--perimeters", "2", "--center", "100,100", *options)
-        rows.append((title, section(crossings(work / f"{name}.gcode", 100.3), 100, name)))
-    wide, high = 30 * SCALE, round(12.4 * SCALE)
-    drawn = [f'<svg xmlns="http://www.w3.org/2000/svg" width="900" height="{900 * 2 * high // wide}" '
-             f'viewBox="{-wide // 2} 0 {wide} {2 * high}" font-family="sans-serif" font-size="55">', LOOK,
-             f'<rect x="{-wide // 2}" y="0" width="100%" height="100%" fill="#fff"/>']
-    for i, (title, lines) in enumerate(rows):
-        drawn += [f'<text x="{-14 * SCALE}" y="{i * high + 90}">{title}</text>',
+def hills(wide=40, deep=9, count=80):
+    """A bar whose top goes up and down."""
+    xs = [wide * (i / count - 0.5) for i in range(count + 1)]
+    tops = [6.5 + 1.5 * math.sin(0.3 * x) + 0.02 * x for x in xs]
+    quads = []
+    for a, b, p, q in zip(xs, xs[1:], tops, tops[1:]):
+        quads += [((a, 0, 0), (b, 0, 0), (b, 0, q), (a, 0, p)),
+                  ((b, deep, 0), (a, deep, 0), (a, deep, p), (b, deep, q)),
+                  ((a, 0, p), (b, 0, q), (b, deep, q), (a, deep, p)),
+                  ((a, deep, 0), (b, deep, 0), (b, 0, 0), (a, 0, 0))]
+    for x, z, front, back in ((xs[0], tops[0], deep, 0), (xs[-1], tops[-1], 0, deep)):
+        quads.append(((x, front, 0), (x, back, 0), (x, back, z), (x, front, z)))
+    return [triangle for a, b, c, d in quads for triangle in ((a, b, c), (a, c, d))]
+
+
+def draw_sections(work, name, model, fields, size):
+    """Under each other, one a field; size is the room for one, mm."""
+    wide, high = round(size[0] * SCALE), round(size[1] * SCALE)
+    rows = len(fields)
+    drawn = [f'<svg xmlns="http://www.w3.org/2000/svg" width="900" height="{900 * rows * high // wide}" '
+             f'viewBox="{-wide // 2} 0 {wide} {rows * high}" font-family="sans-serif" font-size="{wide // 55}">',
+             LOOK, f'<rect x="{-wide // 2}" y="0" width="100%" height="100%" fill="#fff"/>']
+    write_stl(work / f"{name}.stl", model)
+    for i, field in enumerate(fields):
+        run(PROGRAM, "-q", work / f"{name}.stl", "-o", work / f"{name}.gcode", *PRINT, "--fill-density", "100%",
+            "--perimeters", "2", "--center", "100,100", "--field", field)
+        drawn += [f'<text x="{SCALE - wide // 2}" y="{i * high + wide // 40}">field = {field}</text>',
                   f'<g transform="translate(0,{(i + 1) * high - 40})">',
-                  f'<path d="M{-15 * SCALE} 0h{30 * SCALE}" stroke="#000" stroke-width="6"/>', *lines, "</g>"]
-    (FOLDER / "curved-section.svg").write_text("\n".join([*drawn, "</svg>", ""]))
+                  f'<path d="M{-wide // 2} 0h{wide}" stroke="#000" stroke-width="6"/>',
+                  *section(crossings(work / f"{name}.gcode", 100.3), 100, f"{name}{i}"), "</g>"]
+    (FOLDER / f"curved-{name}.svg").write_text("\n".join([*drawn, "</svg>", ""]))
 
 
 def defaults():
@@ -158,7 +174,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         write_stl(work / "dome.stl", dome())
-        draw_sections(work)
+        draw_sections(work, "section", dome(), ["z", FIELD], (30, 12.4))
+        draw_sections(work, "auto-top", hills(), ["z", "auto-top"], (42, 9.5))
         run(PROGRAM, "-q", work / "dome.stl", "-o", work / "dome.gcode", *PRINT, "--field", FIELD,
             "--fill-pattern", "gyroid", "--perimeters", "2", "--field-tolerance", "0.05")
         run(PROGRAM, "preview", "-q", work / "dome.gcode", "-o", FOLDER / "curved-layers.svg", "--layers",
