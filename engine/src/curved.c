@@ -10,6 +10,9 @@
 #include "footing.h"
 #include "slice/range.h"
 
+/* Of a layer's thickness that the tip may press into it: layers are thinner in places. */
+#define TIP_SHARE 0.75
+
 /* mm: sum of two sides of a face on which more than the corners is looked at. */
 #define LARGE_FACE 6
 
@@ -82,11 +85,22 @@ static iso_status check_options(const iso_options *options) {
     return ISO_OK;
 }
 
+/* degrees: what fields that are made to measure keep to. On a slope the flat tip presses into its
+ * own layer, and may do so by no more than that is thick. */
+static double steepest(const iso_options *options) {
+    const double degree = 180 / 3.14159265358979323846;
+    if (turns(options) || !options->check_clearance)
+        return options->field_slope;
+    double tip =
+        series_arctangent(TIP_SHARE * options->layer_height / (options->clearance_tip / 2));
+    return fmin(options->field_slope, degree * tip);
+}
+
 static iso_status make(iso_curved *curved, iso_report *report, const iso_options *options,
                        const iso_object *object) {
     iso_vec3 origin = {object->origin.x, object->origin.y, object->floor};
     ISO_TRY(iso_field_open(&curved->field, options->field, object->mesh, object->mesh_count,
-                           options->field_slope, origin));
+                           steepest(options), origin));
     if (iso_field_is_z(curved->field)) {
         curved_free(curved);
         return ISO_OK;
