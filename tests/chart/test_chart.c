@@ -261,6 +261,20 @@ static void test_places_without_a_layer(void) {
     chart_free(map);
 }
 
+/* A ball around the middle of the box without a value: a search that is led into it finds nothing
+ * there, whatever the slope beside it. */
+static void test_no_layer_where_there_is_no_value(void) {
+    iso_field *field = field_of("z + 0.1*sqrt(x^2 + y^2 + (z-6)^2 - 1)");
+    chart *map = chart_of(field, CHART_GRAPH, 0, 12);
+    chart_point point[2];
+    iso_vec2 flat[2] = {{0, 0}, {5, 0}};
+    CHECK_OK(chart_lift(point, map, flat, 3, 2));
+    CHECK_STATUS(ISO_OUTSIDE, chart_lift(point, map, flat, 6.05, 1));
+    CHECK_OK(chart_lift(point, map, flat + 1, 6.05, 1));
+    chart_free(map);
+    iso_field_free(field);
+}
+
 /* A cone's layer takes one look at each place, others few. */
 static void test_searches_are_short(void) {
     analytic even = analytic_field(ISO_FIELD_CONE, 0.4, 0),
@@ -509,6 +523,7 @@ int main(void) {
     RUN(test_layers_that_fold_are_refused);
     RUN(test_a_fan_beside_its_axis);
     RUN(test_places_without_a_layer);
+    RUN(test_no_layer_where_there_is_no_value);
     RUN(test_searches_are_short);
     RUN(test_volume_of_a_ball_by_spheres);
     RUN(test_volume_of_a_tube_by_cylinders);

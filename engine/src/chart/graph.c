@@ -59,7 +59,7 @@ static void advance(chart_point *point, const chart *map, search *s, double r) {
     iso_field_evaluate(s->value, s->rising, map->field, s->at, s->count);
     for (int32_t k = 0; k < s->count; k++) {
         double z = next_z(map, s, k, r);
-        bool there = fabs(z - s->at[k].z) <= last_step && s->rising[k].z > 0;
+        bool there = fabs(z - s->at[k].z) <= last_step && s->rising[k].z > 0 && !isnan(s->value[k]);
         s->at[k].z = z;
         if (there) {
             accept(&point[s->index[k]], s->at[k], s->rising[k]);
