@@ -37,7 +37,7 @@ static int make(iso_curved *curved, const char *text) {
 
 static int is_free(const char *text, const clearance_tool *tool) {
     iso_curved curved;
-    int result = CHECK(make(&curved, text)) && gentle_is_free(&curved, tool, 0.02);
+    int result = CHECK(make(&curved, text)) && gentle_is_free(&curved, tool, 0.02, false);
     curved_free(&curved);
     return result;
 }
@@ -74,6 +74,30 @@ static void test_parts(void) {
     CHECK(!is_free("cone:8", &tool));
     tool.gantry_height = 0;
     CHECK(is_free("cone:8", &tool));
+}
+
+/* Square on its layers, above a part from low to high of F. */
+static int is_free_turned(const char *text, double low, double high, bool bare) {
+    const iso_vec3 box[2] = {{-SIZE / 2, -SIZE / 2, 0}, {SIZE / 2, SIZE / 2, HEIGHT}};
+    iso_curved curved = {.low = low, .high = high, .thinnest = 0.3};
+    clearance_tool tool = usual;
+    tool.turning = CLEARANCE_ABOUT_ALL;
+    if (!CHECK_EQUAL(ISO_OK, iso_field_new(&curved.field, text)) ||
+        !CHECK_EQUAL(ISO_OK,
+                     chart_new(&curved.chart, curved.field, true, box, (double[2]){low, high})))
+        return -1;
+    int result = gentle_is_free(&curved, &tool, 0.02, bare);
+    curved_free(&curved);
+    return result;
+}
+
+static void test_square(void) {
+    CHECK_EQUAL(1, is_free_turned("cylinder:x,0,10", 3, 12, true));
+    CHECK_EQUAL(0, is_free_turned("cylinder:x,0,10", 3, 12, false));
+    CHECK_EQUAL(1, is_free_turned("sphere:0,0,-20", 20, 50, true));
+    CHECK_EQUAL(1, is_free_turned("fan:y,-40,0,40", 0, 40 * 3.1, true));
+    CHECK_EQUAL(0, is_free_turned("fan:y,-40,0,40", 0, 40 * 3.2, true));
+    CHECK_EQUAL(0, is_free_turned("cone:8", 0, 30, true));
 }
 
 static double envelope(const clearance_tool *tool, double x, double y) {
@@ -131,7 +155,7 @@ static void test_samples(void) {
         double first = i % 3 == 0 ? 25 * a : i % 3 == 1 ? 1.5 * a : a;
         double second = i % 3 == 0 ? 10 * b : i % 3 == 1 ? 10 + 40 * b : 0.4 * b;
         snprintf(text, sizeof text, form, first, second);
-        if (make(&curved, text) && gentle_is_free(&curved, &tool, 0.02)) {
+        if (make(&curved, text) && gentle_is_free(&curved, &tool, 0.02, false)) {
             double deepest = depth(&curved, &tool, &random);
             if (!CHECK(deepest <= 0))
                 fprintf(stderr, "    %s: %g mm\n", text, deepest);
@@ -147,6 +171,7 @@ static void test_samples(void) {
 int main(void) {
     RUN(test_what_is_free);
     RUN(test_parts);
+    RUN(test_square);
     RUN(test_samples);
     return check_verdict();
 }

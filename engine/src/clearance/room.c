@@ -3,10 +3,10 @@
 #include "base/memory.h"
 #include "clearance/beads.h"
 
-/* A tile has 8 x 8 x 8 cells; the tree's root has 512 x 512 x 512 tiles: more than
+/* A tile has 8 x 8 x 8 cells; the tree's root has 1024 x 1024 x 1024 tiles: more than
  * ISO_COORDINATE_MAX allows. */
-#define CELL 1.0 /* mm */
-enum { TILE = 8, LEVELS = 9 };
+#define CELL 0.7 /* mm */
+enum { TILE = 8, LEVELS = 10 };
 #define ORIGIN (-CELL * TILE * (1 << LEVELS) / 2)
 #define HALF_DIAGONAL 0.8660254037844387 /* of a cube of side 1, rounded up */
 #define ROUND 1e-3                       /* mm, more than what single precision is off */
@@ -16,9 +16,9 @@ typedef struct room_cell {
     int16_t normal[3]; /* in 32767ths; all 0: the cell is empty */
 } room_cell;
 
-/* Cells in Morton order: cubes of 4 mm, in each cubes of 2 mm, in each cells. */
+/* Cells in Morton order: cubes of 4 x 4 x 4 cells, in each those of 2 x 2 x 2, in each cells. */
 typedef struct room_tile {
-    uint64_t used; /* cubes of 2 mm with anything in them */
+    uint64_t used; /* cubes of 2 x 2 x 2 with anything in them */
     room_cell cell[TILE * TILE * TILE];
 } room_tile;
 
@@ -275,7 +275,8 @@ typedef struct room_question {
     tool_shape nozzle;        /* raised */
     double lowest;            /* height of anything of the tool */
     iso_vec3 tip, x, y, axis; /* halfway */
-    double way, turn;         /* half of how far the tip goes and of how much the tool turns */
+    double way, rise, turn;   /* half of how far the tip goes, of that along the axis, and of how
+                               * much the tool turns */
 } room_question;
 
 /* Parts that a ball may meet, anywhere on the way: for each, halfspaces that the part lies in. */
@@ -283,25 +284,24 @@ static int parts_near(const room_question *question, iso_vec3 middle, double bal
     const room_map *room = question->room;
     iso_vec3 from = vec3_minus(middle, question->tip);
     double square = vec3_dot(from, from), height = vec3_dot(from, question->axis);
-    double around = ball + question->way;
-    if (question->turn > 0)
-        around += question->turn * (sqrt(square) + ball);
-    if (height + around < question->lowest)
+    double turned = question->turn > 0 ? question->turn * (sqrt(square) + ball) : 0;
+    double around = ball + question->way + turned, tall = ball + question->rise + turned;
+    if (height + tall < question->lowest)
         return 0;
     int parts = 0;
-    if (room->there[TOOL_NOZZLE] && height - around < question->nozzle.high) {
+    if (room->there[TOOL_NOZZLE] && height - tall < question->nozzle.high) {
         const tool_shape *cone = &question->nozzle;
         double radius = sqrt(most_of(0, square - height * height));
         double side = radius - cone->radius_low - (height - cone->low) * room->tool->tangent;
         if (side * room->cosine < around)
             parts |= 1 << TOOL_NOZZLE;
     }
-    if (height + around < room->boxes_from)
+    if (height + tall < room->boxes_from)
         return parts;
     double x = vec3_dot(from, question->x), y = vec3_dot(from, question->y);
     for (int i = TOOL_BLOCK; i < TOOL_PARTS; i++) {
         const tool_shape *shape = &room->shape[i];
-        if (!room->there[i] || height + around < shape->low)
+        if (!room->there[i] || height + tall < shape->low)
             continue;
         if (shape->round ? square - height * height >
                                (shape->radius_low + around) * (shape->radius_low + around)
@@ -450,6 +450,7 @@ void room_check(ground_doubt *doubt, const room_map *room, const tool_pose pose[
     question.y = halfway.y;
     question.axis = halfway.axis;
     question.way = vec3_distance(pose[0].tip, pose[1].tip) / 2;
+    question.rise = fabs(vec3_dot(vec3_minus(pose[1].tip, pose[0].tip), halfway.axis)) / 2;
     double turn = vec3_distance(pose[0].axis, pose[1].axis);
     turn = most_of(turn, vec3_distance(pose[0].x, pose[1].x));
     turn = most_of(turn, vec3_distance(pose[0].y, pose[1].y));

@@ -1,8 +1,8 @@
 /* The room: where beads are, for tools that turn.
  *
- * A tree of cubes, eight in each, down to cells of 1 mm. A cell knows a plane that nothing in it is
- * above, square to the beads there. Moves are proven free because the tool is farther from a cube's
- * middle than its corners are, or above a cell's plane. */
+ * A tree of cubes, eight in each, down to cells of 0.7 mm. A cell knows a plane that nothing in it
+ * is above, square to the beads there. Moves are proven free because the tool is farther from a
+ * cube's middle than its corners are, or above a cell's plane. */
 #ifndef ISO_CLEARANCE_ROOM_H
 #define ISO_CLEARANCE_ROOM_H
 
