@@ -37,6 +37,13 @@ static bool is_low(const iso_options *options) {
     return options->draft_shield == ISO_SHIELD_DISABLED && options->skirt_height <= 1;
 }
 
+/* Around a mandrel there is nothing anyway. */
+static bool is_bare(const iso_options *options) {
+    return options->kinematics == ISO_KINEMATICS_ROTARY_A ||
+           options->kinematics == ISO_KINEMATICS_ROTARY_B ||
+           (options->skirts == 0 && options->brim_type == ISO_BRIM_NONE);
+}
+
 iso_status bend_begin(iso_bend *bend, iso_gcode_options *gcode, const iso_options *options,
                       const iso_curved *curved, iso_point by, bool alone) {
     bend->on = true;
@@ -48,7 +55,8 @@ iso_status bend_begin(iso_bend *bend, iso_gcode_options *gcode, const iso_option
     if (!options->check_clearance)
         return ISO_OK;
     bend->tool = settings_of_tool(options);
-    if (alone && is_low(options) && gentle_is_free(curved, &bend->tool, options->field_tolerance))
+    if (alone && is_low(options) &&
+        gentle_is_free(curved, &bend->tool, options->field_tolerance, is_bare(options)))
         return ISO_OK;
     gcode->watch = watch;
     gcode->watch_payload = bend;

@@ -4,6 +4,9 @@
 
 #include "base/series.h"
 #include "base/vector.h"
+#include "field/field.h"
+
+#define PI 3.14159265358979323846
 
 /* Boxes that are looked at before giving up: some milliseconds' worth. */
 enum { BOXES = 32768 };
@@ -98,7 +101,7 @@ static double limit(double slope, double height, double reach) {
 
 /* Of the cone's side. */
 static double steepest_near(const clearance_tool *tool, double margin) {
-    double side = series_tangent(tool->cone_angle * 3.14159265358979323846 / 180);
+    double side = series_tangent(tool->cone_angle * PI / 180);
     return limit(1, tool->cone_height - margin, tool->tip_diameter / 2 + tool->cone_height * side);
 }
 
@@ -110,7 +113,8 @@ static double steepest_far(const clearance_tool *tool, double across, double mar
                  fmin(farthest(tool->carriage_low, tool->carriage_high), across));
 }
 
-bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double tolerance) {
+static bool is_free_upright(const iso_curved *curved, const clearance_tool *tool,
+                            double tolerance) {
     iso_vec3 low = curved->box[0], high = curved->box[1];
     double x = high.x - low.x, y = high.y - low.y, across = sqrt(x * x + y * y);
     double margin = 2 * tolerance + CLEARANCE_TOLERANCE;
@@ -124,8 +128,7 @@ bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double
                 .kink_low = {INFINITY, INFINITY},
                 .kink_high = {-INFINITY, -INFINITY},
                 .bend = {INFINITY, -INFINITY}};
-    if (tool->turning != CLEARANCE_UPRIGHT || chart_kind_of(curved->chart) != CHART_GRAPH ||
-        !(s.near > 0 && s.far > 0))
+    if (chart_kind_of(curved->chart) != CHART_GRAPH || !(s.near > 0 && s.far > 0))
         return false;
     /* between two places of the part a layer may run outside its box */
     double beyond = fmin(s.far, s.near) * across + KINKS_RISE;
@@ -133,4 +136,25 @@ bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double
     high.z += beyond;
     return look(&s, low, high) &&
            (!(tool->gantry_height > 0) || s.bend[1] - s.bend[0] <= tool->gantry_height - margin);
+}
+
+/* A tool square on a cylinder or a sphere is outside of it, whatever its shape, and all that is
+ * printed is inside. A half plane of a fan has it all on one side, for half a turn. */
+static bool is_free_square(const iso_curved *curved) {
+    switch (chart_kind_of(curved->chart)) {
+    case CHART_CYLINDER:
+    case CHART_SPHERE:
+        return true;
+    case CHART_FAN:
+        return curved->high - curved->low <= PI * field_shape_of(curved->field).radius;
+    default:
+        return false;
+    }
+}
+
+bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double tolerance,
+                    bool bare) {
+    if (tool->turning == CLEARANCE_UPRIGHT)
+        return is_free_upright(curved, tool, tolerance);
+    return bare && is_free_square(curved);
 }

@@ -11,7 +11,9 @@
 #include "clearance/clearance.h"
 #include "curved.h"
 
-/* Is a print of one object, with nothing tall around it, free for certain? The tool is upright. */
-bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double tolerance);
+/* Is a print of one object, with nothing tall around it, free for certain? `bare`: there's nothing
+ * at all around it. mm of `tolerance`: what lines may be off their layer. */
+bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double tolerance,
+                    bool bare);
 
 #endif
