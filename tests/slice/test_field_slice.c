@@ -428,6 +428,27 @@ static void test_jump(void) {
     iso_mesh_free(&mesh);
 }
 
+/* Every face along it would take hundreds of thousands of looks, at a field that may be slow. */
+static void jump_counted(double *value, iso_vec3 *gradient, const iso_vec3 *at, int64_t count,
+                         void *payload) {
+    *(int64_t *)payload += count;
+    jump(value, gradient, at, count, NULL);
+}
+
+static void test_jump_is_found_quickly(void) {
+    iso_mesh mesh;
+    iso_curves c;
+    iso_field *field;
+    int64_t looks = 0;
+    double level[] = {0, 3, 6};
+    make_cube(&mesh);
+    CHECK_OK(iso_field_from_function(&field, jump_counted, jump_bound, 0, &looks));
+    CHECK_STATUS(ISO_UNSLICEABLE, iso_slice_field(&c, &mesh, field, level, 3, NULL));
+    CHECK(looks < 1000);
+    iso_field_free(field);
+    iso_mesh_free(&mesh);
+}
+
 static void test_no_value(void) {
     iso_mesh mesh;
     iso_curves c = {0};
@@ -496,6 +517,7 @@ int main(void) {
     RUN(test_touching);
     RUN(test_range);
     RUN(test_jump);
+    RUN(test_jump_is_found_quickly);
     RUN(test_no_value);
     RUN(test_bad_use);
     RUN(test_allocation_failures);

@@ -31,6 +31,8 @@
 /* mm, and mm a mm: what rises more across an edge that isn't to be split is no layer's shape. */
 #define JUMP 0.5
 #define STEEP 100
+/* mm a mm: what rises more may jump. */
+#define SUSPECT 4
 /* Edges as long as this part of the longest are split with it. */
 #define LONG 0.6
 
@@ -148,9 +150,7 @@ static bool has_no_loop(const face *f) {
 }
 
 /* What no splitting settles: F jumps across the edge, or as good as. */
-static iso_status check_jump(const face *f, int k, double length) {
-    double rise = fabs(f->value[(k + 1) % 3] - f->value[k]);
-    iso_vec3 p = f->corner[k];
+static iso_status check_jump(iso_vec3 p, double rise, double length) {
     if (rise < JUMP || rise < STEEP * length)
         return ISO_OK;
     return iso_fail(ISO_UNSLICEABLE,
@@ -158,10 +158,33 @@ static iso_status check_jump(const face *f, int k, double length) {
                     p.y, p.z);
 }
 
+/* Halve a steep edge towards where it rises most: a jump shows at once, before all faces that it
+ * crosses are split until they are tiny. */
+static iso_status look_for_jump(const refiner *s, const face *f, int k, double length) {
+    iso_vec3 p = f->corner[k], q = f->corner[(k + 1) % 3];
+    double from = f->value[k], to = f->value[(k + 1) % 3], middle;
+    while (fabs(to - from) >= JUMP && fabs(to - from) >= SUSPECT * length) {
+        if (length <= s->options->resolution)
+            return check_jump(p, fabs(to - from), length);
+        iso_vec3 half = vec3_between(p, q, 0.5);
+        iso_field_evaluate(&middle, NULL, s->r->field, &half, 1);
+        length /= 2;
+        if (fabs(middle - from) >= fabs(to - middle)) {
+            q = half;
+            to = middle;
+        } else {
+            p = half;
+            from = middle;
+        }
+    }
+    return ISO_OK;
+}
+
 static iso_status mark(const refiner *s, const face *f, int k, bool *marked) {
     double length = vec3_length(f->edge[k]);
     if (length <= s->options->resolution)
-        return check_jump(f, k, length);
+        return check_jump(f->corner[k], fabs(f->value[(k + 1) % 3] - f->value[k]), length);
+    ISO_TRY(look_for_jump(s, f, k, length));
     *marked = true;
     return refined_mark(s->r, f->dart + k);
 }
