@@ -61,6 +61,21 @@ def dome(radius=14, rim=9, curvature=60, sides=48):
     return turned([(radius, 0), *zip((*range(radius, 0, -2), 0.2), top)], sides)
 
 
+def sleeve(outer=8, inner=6, length=16, sides=48):
+    """A tube that lies along x."""
+    def point(i, radius, x):
+        angle = 2 * math.pi * (i % sides) / sides
+        return (x, radius * math.cos(angle), radius * math.sin(angle))
+
+    triangles = []
+    for i in range(sides):
+        for a, b in (((outer, 0), (outer, length)), ((outer, length), (inner, length)),
+                     ((inner, length), (inner, 0)), ((inner, 0), (outer, 0))):
+            p, q, r, s = point(i, *a), point(i + 1, *a), point(i + 1, *b), point(i, *b)
+            triangles += [(p, q, r), (p, r, s)]
+    return triangles
+
+
 def moved(triangles, x, y, z=0):
     return [[(p[0] + x, p[1] + y, p[2] + z) for p in triangle] for triangle in triangles]
 

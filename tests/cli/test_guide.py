@@ -12,7 +12,7 @@ import sys
 import tempfile
 import unittest
 
-from models import box, dome, moved, plate_with_hole, prism, turned, write_stl
+from models import box, dome, moved, plate_with_hole, prism, sleeve, turned, write_stl
 
 ROOT, PROGRAM, PRINTER, HOST = (pathlib.Path(argument).resolve() for argument in sys.argv[1:5])
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -30,6 +30,7 @@ MODELS = {
     "vase.stl": turned([(9, 0), (11, 6), (8, 12)], 32, lobes=5, depth=0.1, twist=0.8),
     "house.stl": plate_with_hole(8, 6, 5) + moved(box((0, -8, 0), (5, 8, 6)), 12, 0),
     "dome.stl": dome(),
+    "sleeve.stl": sleeve(),
     "cup.stl": turned([(24, 0), (30, 30), (28, 55)], 48),
     "broken.stl": box((0, 0, 0), (9, 9, 9))[:-2],
 }
