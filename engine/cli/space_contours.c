@@ -12,6 +12,7 @@
 #include "base/output.h"
 #include "config/settings_objects.h"
 #include "config/value.h"
+#include "curved.h"
 #include "slice/range.h"
 #include "space_map.h"
 
@@ -51,7 +52,7 @@ static iso_status open_field(cut *c, int32_t i) {
     iso_vec3 origin = {object->origin.x, object->origin.y, object->floor};
     double range[2];
     ISO_TRY(iso_field_open(&c->field[i], c->options->field, object->mesh, object->mesh_count,
-                           c->options->field_slope, origin));
+                           curved_steepest(c->options), origin));
     ISO_TRY(field_range(range, c->field[i], object->mesh, object->mesh_count));
     c->low[i] = range[0];
     c->span = fmax(c->span, range[1] - range[0]);

@@ -41,7 +41,8 @@ static bool is_low(const iso_options *options) {
 static bool is_bare(const iso_options *options) {
     return options->kinematics == ISO_KINEMATICS_ROTARY_A ||
            options->kinematics == ISO_KINEMATICS_ROTARY_B ||
-           (options->skirts == 0 && options->brim_type == ISO_BRIM_NONE);
+           (options->skirts == 0 &&
+            (options->brim_type == ISO_BRIM_NONE || !(options->brim_width > 0)));
 }
 
 iso_status bend_begin(iso_bend *bend, iso_gcode_options *gcode, const iso_options *options,

@@ -85,22 +85,11 @@ static iso_status check_options(const iso_options *options) {
     return ISO_OK;
 }
 
-/* degrees: what fields that are made to measure keep to. On a slope the flat tip presses into its
- * own layer, and may do so by no more than that is thick. */
-static double steepest(const iso_options *options) {
-    const double degree = 180 / 3.14159265358979323846;
-    if (turns(options) || !options->check_clearance)
-        return options->field_slope;
-    double tip =
-        series_arctangent(TIP_SHARE * options->layer_height / (options->clearance_tip / 2));
-    return fmin(options->field_slope, degree * tip);
-}
-
 static iso_status make(iso_curved *curved, iso_report *report, const iso_options *options,
                        const iso_object *object) {
     iso_vec3 origin = {object->origin.x, object->origin.y, object->floor};
     ISO_TRY(iso_field_open(&curved->field, options->field, object->mesh, object->mesh_count,
-                           steepest(options), origin));
+                           curved_steepest(options), origin));
     if (iso_field_is_z(curved->field)) {
         curved_free(curved);
         return ISO_OK;
@@ -123,6 +112,17 @@ static iso_status make(iso_curved *curved, iso_report *report, const iso_options
     curved->margin = 4 + options->perimeters * options->nozzle_diameter * 2;
     ISO_TRY(chart_new(&curved->chart, curved->field, turns(options), box, range));
     return plan_spread(curved, options, object);
+}
+
+/* On a slope the flat tip presses into its own layer, and may do so by no more than that is thick.
+ */
+double curved_steepest(const iso_options *options) {
+    const double degree = 180 / 3.14159265358979323846;
+    if (turns(options) || !options->check_clearance)
+        return options->field_slope;
+    double tip =
+        series_arctangent(TIP_SHARE * options->layer_height / (options->clearance_tip / 2));
+    return fmin(options->field_slope, degree * tip);
 }
 
 iso_status curved_new(iso_curved *curved, iso_report *report, const iso_options *options,
