@@ -40,6 +40,9 @@ static iso_status gather(footprint *f, const iso_region *hull, const iso_object 
 static iso_status footprint_new(footprint *f, const iso_object *object) {
     iso_region hull = {0};
     iso_status status = iso_meshes_hull(&hull, object->mesh, object->mesh_count);
+    if (status == ISO_OK && hull.count == 0)
+        status = iso_fail(ISO_OUTSIDE, "%s is %g mm wide: nothing that could be printed",
+                          object->name, object->max.x - object->min.x);
     if (status == ISO_OK)
         status = gather(f, &hull, object);
     iso_region_free(&hull);

@@ -75,9 +75,15 @@ static void field(const change *c) {
     CHECK_NEAR(16 * 16 * 9, print_volume(c->b), 0.015 * 16 * 16 * 9);
 }
 
+/* Smaller than a unit: from above there is nothing of it to bend over. */
+static void make_speck(shape *s) {
+    shape_box(s, 0, 0, 0, 3e-5, 3e-5, 3e-5);
+}
+
 static void field_flat_base(const change *c) {
     CHECK(steepest(c->a, 0, 0.4) < 0.01);
     CHECK(steepest(c->b, 0, 0.4) > 0.15);
+    is_outside(make_speck, QUICK "field = cone:12\n", "nothing that could be printed");
 }
 
 static void field_base(const change *c) {
