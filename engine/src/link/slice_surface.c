@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "link/unimodal.h"
-#include "slice/roots.h"
+#include "slice/curves.h"
 
 typedef struct slicer {
     const iso_double_link *surface;
@@ -20,19 +20,6 @@ typedef struct slicer {
     int32_t *lower; /* [size] the first level >= the dart's height */
     int32_t *base;  /* [size + 1] number of the dart's first crossing */
 } slicer;
-
-static iso_status check_levels(const slicer *s) {
-    if (s->level_count < 0)
-        return iso_fail(ISO_USAGE, "%d levels", s->level_count);
-    for (int32_t i = 0; i < s->level_count; i++) {
-        if (!isfinite(s->level[i]))
-            return iso_fail(ISO_USAGE, "level %d is not finite", i);
-        if (i > 0 && s->level[i] <= s->level[i - 1])
-            return iso_fail(ISO_USAGE, "level %d (%g) is not above the one before (%g)", i,
-                            s->level[i], s->level[i - 1]);
-    }
-    return ISO_OK;
-}
 
 static iso_status check_heights(const slicer *s) {
     for (int32_t a = 0; a < s->surface->link.size; a++)
@@ -172,7 +159,7 @@ static iso_status evaluate(slicer *s) {
 static iso_status slice(iso_coloured_link *out, slicer *s) {
     int32_t size = s->surface->link.size;
     ISO_TRY(iso_multilink_validate(&s->surface->link));
-    ISO_TRY(check_levels(s));
+    ISO_TRY(curves_check_levels(s->level, s->level_count));
     if (s->field)
         ISO_TRY(evaluate(s));
     else
