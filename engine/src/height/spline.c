@@ -89,6 +89,44 @@ static void reach_of(int32_t *first, int32_t *last, double low, double high, int
     *last = clamped(b, count);
 }
 
+static double control_at(const spline *s, int32_t i, int32_t j) {
+    return s->control[clamped(i, s->columns) + (int64_t)s->columns * clamped(j, s->rows)];
+}
+
+/* How fast slopes change at most among those points: along x, along y, and of either by the other.
+ */
+static void bending(double most[3], const spline *s, const int32_t first[2],
+                    const int32_t last[2]) {
+    most[0] = most[1] = most[2] = 0;
+    for (int32_t j = first[1]; j <= last[1]; j++)
+        for (int32_t i = first[0]; i <= last[0]; i++) {
+            double c = control_at(s, i, j), x = control_at(s, i + 1, j);
+            double y = control_at(s, i, j + 1);
+            most[0] = fmax(most[0], fabs(control_at(s, i - 1, j) - 2 * c + x));
+            most[1] = fmax(most[1], fabs(control_at(s, i, j - 1) - 2 * c + y));
+            most[2] = fmax(most[2], fabs(control_at(s, i + 1, j + 1) - x - y + c));
+        }
+    for (int k = 0; k < 3; k++)
+        most[k] /= s->step * s->step;
+}
+
+static void narrow(interval *span, double middle, double reach) {
+    *span = interval_both(*span, (interval){middle - reach, middle + reach});
+}
+
+/* By the mean value theorem: what is left of a small box is as small. */
+static void narrow_bound(interval bound[3], const spline *s, iso_vec2 low, iso_vec2 high,
+                         const double bend[3]) {
+    double x = (high.x - low.x) / 2, y = (high.y - low.y) / 2;
+    if (!(x + y < HUGE_VAL))
+        return;
+    spline_sample middle = spline_at(s, low.x + x, low.y + y);
+    narrow(&bound[1], middle.x, bend[0] * x + bend[2] * y);
+    narrow(&bound[2], middle.y, bend[2] * x + bend[1] * y);
+    narrow(&bound[0], middle.value,
+           fmax(-bound[1].low, bound[1].high) * x + fmax(-bound[2].low, bound[2].high) * y);
+}
+
 void spline_bound(interval bound[3], const spline *s, iso_vec2 low, iso_vec2 high) {
     int32_t i0, i1, j0, j1;
     reach_of(&i0, &i1, (low.x - s->corner.x) / s->step, (high.x - s->corner.x) / s->step,
@@ -110,8 +148,11 @@ void spline_bound(interval bound[3], const spline *s, iso_vec2 low, iso_vec2 hig
         include(&bound[1], 0);
     if (j0 == j1 || j0 == 0 || j1 == s->rows - 1)
         include(&bound[2], 0);
+    double bend[3];
+    bending(bend, s, (const int32_t[]){i0, j0}, (const int32_t[]){i1, j1});
+    narrow_bound(bound, s, low, high, bend);
     for (int k = 0; k < 3; k++) {
-        double slack = 1e-13 * (1 + fmax(-bound[k].low, bound[k].high));
+        double slack = 1e-12 * (1 + fmax(-bound[k].low, bound[k].high));
         bound[k] = (interval){bound[k].low - slack, bound[k].high + slack};
     }
 }
