@@ -76,8 +76,10 @@ static iso_status push(bool *settled, curve *c, const part_space *part, const ke
 
 iso_status keep_off(curve *c, const part_space *part, const keeping *options) {
     bool settled = false;
+    /* where the part is rugged pushing may tear a curve apart, longer and longer */
+    double most = 1.5 * curve_length(c);
     ISO_TRY(curve_relax(c, options->radius, options->step, options->fixed));
-    for (int turn = 0; turn < TURNS && !settled; turn++) {
+    for (int turn = 0; turn < TURNS && !settled && curve_length(c) <= most; turn++) {
         ISO_TRY(push(&settled, c, part, options));
         if (!settled)
             ISO_TRY(curve_relax(c, options->radius, options->step, options->fixed));
