@@ -138,9 +138,17 @@ static bool is_free_upright(const iso_curved *curved, const clearance_tool *tool
            (!(tool->gantry_height > 0) || s.bend[1] - s.bend[0] <= tool->gantry_height - margin);
 }
 
+/* Near its axis a turning table is left as it stands (POSE_POLE): radians that the tool may be off
+ * square there, and a little more. Its own cone and tip don't come near anything by that. */
+#define POLE 0.01
+
 /* A tool square on a cylinder or a sphere is outside of it, whatever its shape, and all that is
  * printed is inside. A half plane of a fan has it all on one side, for half a turn. */
-static bool is_free_square(const iso_curved *curved) {
+static bool is_free_square(const iso_curved *curved, const clearance_tool *tool) {
+    double across = vec3_distance(curved->box[0], curved->box[1]);
+    if (steepest_far(tool, across, CLEARANCE_TOLERANCE) < POLE ||
+        (tool->gantry_height > 0 && tool->gantry_height < POLE * across))
+        return false;
     switch (chart_kind_of(curved->chart)) {
     case CHART_CYLINDER:
     case CHART_SPHERE:
@@ -156,5 +164,5 @@ bool gentle_is_free(const iso_curved *curved, const clearance_tool *tool, double
                     bool bare) {
     if (tool->turning == CLEARANCE_UPRIGHT)
         return is_free_upright(curved, tool, tolerance);
-    return bare && is_free_square(curved);
+    return bare && is_free_square(curved, tool);
 }
