@@ -22,19 +22,19 @@ static void evaluate(double *value, iso_vec3 *gradient, const iso_field *field, 
 
 static interval value_at(const void *context, iso_vec3 at) {
     interval box[3];
-    spread there;
+    enclosure there;
     field_box(box, at, at);
-    formula_spread(&there, context, box, 0);
+    formula_enclose(&there, context, box, 0);
     return there.value;
 }
 
 /* By steps of intervals alone a bound is wide where parts of the expression move together. */
 static void bound(iso_field_bound *bound, const iso_field *field, iso_vec3 low, iso_vec3 high) {
     interval box[3];
-    spread all;
+    enclosure all;
     field_box(box, low, high);
-    formula_spread(&all, formula_of(field), box, SPREAD_SLOPES);
-    for (int c = 0; c < SPREAD_SLOPES; c++)
+    formula_enclose(&all, formula_of(field), box, ENCLOSURE_SLOPES);
+    for (int c = 0; c < ENCLOSURE_SLOPES; c++)
         if (!interval_is_finite(all.slope[c])) /* what is infinite is given as 0 */
             all.slope[c] = interval_hull(all.slope[c], interval_at(0));
     field_bound_set(bound, all.value, all.slope);

@@ -158,14 +158,15 @@ void formula_evaluate(double *value, iso_vec3 *gradient, const iso_formula *form
 
 /* ---- over a box ---- */
 
-static void set_leaf(spread *to, interval value, int32_t variable) {
+static void set_leaf(enclosure *to, interval value, int32_t variable) {
     to->value = value;
-    for (int32_t c = 0; c < SPREAD_SLOPES; c++)
+    for (int32_t c = 0; c < ENCLOSURE_SLOPES; c++)
         to->slope[c] = interval_at(c == variable ? 1 : 0);
 }
 
-void formula_spread(spread *to, const iso_formula *formula, const interval box[3], int32_t slopes) {
-    spread place[FORMULA_VARIABLES + FORMULA_REGISTERS];
+void formula_enclose(enclosure *to, const iso_formula *formula, const interval box[3],
+                     int32_t slopes) {
+    enclosure place[FORMULA_VARIABLES + FORMULA_REGISTERS];
     for (int32_t k = 0; k < FORMULA_VARIABLES; k++)
         set_leaf(&place[k], box[k], k);
     for (int32_t s = 0; s < formula->count; s++) {
@@ -176,10 +177,10 @@ void formula_spread(spread *to, const iso_formula *formula, const interval box[3
             continue;
         }
         const iso_operation *operation = operation_at(step->operation);
-        const spread *from[OPERATION_OPERANDS];
+        const enclosure *from[OPERATION_OPERANDS];
         for (int32_t k = 0; k < operation->operands; k++)
             from[k] = &place[step->from[k]];
-        operation->spread(&place[step->to], from, slopes);
+        operation->enclose(&place[step->to], from, slopes);
     }
     *to = place[formula->result];
 }

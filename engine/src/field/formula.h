@@ -44,6 +44,7 @@ void formula_evaluate(double *value, iso_vec3 *gradient, const iso_formula *form
                       const iso_vec3 *at, int64_t count);
 
 /* With slopes by x, y, z or, `slopes` 0, without. */
-void formula_spread(spread *to, const iso_formula *formula, const interval box[3], int32_t slopes);
+void formula_enclose(enclosure *to, const iso_formula *formula, const interval box[3],
+                     int32_t slopes);
 
 #endif

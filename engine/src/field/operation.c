@@ -5,7 +5,7 @@
 
 #include "base/series.h"
 #include "field/slope.h"
-#include "field/spread.h"
+#include "field/enclosure.h"
 
 /* A function of whole arrays from an expression in a, b ... of one value of each. */
 #define OPERATION1(name, value)                                                                    \
@@ -129,42 +129,42 @@ static void apply_ramp(double *to, const double *const *from, int32_t count) {
 }
 
 static const iso_operation table[] = {
-    [OPERATION_NEGATE] = {NULL, 1, 0, apply_negate, spread_negate, NULL, {-1}},
-    [OPERATION_ADD] = {NULL, 2, 0, apply_add, spread_add, NULL, {1, 1}},
-    [OPERATION_SUBTRACT] = {NULL, 2, 0, apply_subtract, spread_subtract, NULL, {1, -1}},
-    [OPERATION_MULTIPLY] = {NULL, 2, 0, apply_multiply, spread_multiply, slope_multiply, {0}},
-    [OPERATION_DIVIDE] = {NULL, 2, 0, apply_divide, spread_divide, slope_divide, {0}},
-    [OPERATION_POWER] = {NULL, 2, 0, apply_power, spread_power, slope_power, {0}},
-    [OPERATION_LESS] = {NULL, 2, 0, apply_less, spread_less, NULL, {0, 0}},
-    [OPERATION_LESS_EQUAL] = {NULL, 2, 0, apply_less_equal, spread_less_equal, NULL, {0, 0}},
-    [OPERATION_GREATER] = {NULL, 2, 0, apply_greater, spread_greater, NULL, {0, 0}},
+    [OPERATION_NEGATE] = {NULL, 1, 0, apply_negate, enclose_negate, NULL, {-1}},
+    [OPERATION_ADD] = {NULL, 2, 0, apply_add, enclose_add, NULL, {1, 1}},
+    [OPERATION_SUBTRACT] = {NULL, 2, 0, apply_subtract, enclose_subtract, NULL, {1, -1}},
+    [OPERATION_MULTIPLY] = {NULL, 2, 0, apply_multiply, enclose_multiply, slope_multiply, {0}},
+    [OPERATION_DIVIDE] = {NULL, 2, 0, apply_divide, enclose_divide, slope_divide, {0}},
+    [OPERATION_POWER] = {NULL, 2, 0, apply_power, enclose_power, slope_power, {0}},
+    [OPERATION_LESS] = {NULL, 2, 0, apply_less, enclose_less, NULL, {0, 0}},
+    [OPERATION_LESS_EQUAL] = {NULL, 2, 0, apply_less_equal, enclose_less_equal, NULL, {0, 0}},
+    [OPERATION_GREATER] = {NULL, 2, 0, apply_greater, enclose_greater, NULL, {0, 0}},
     [OPERATION_GREATER_EQUAL] =
-        {NULL, 2, 0, apply_greater_equal, spread_greater_equal, NULL, {0, 0}},
-    [OPERATION_EQUAL] = {NULL, 2, 0, apply_equal, spread_equal, NULL, {0, 0}},
-    [OPERATION_UNEQUAL] = {NULL, 2, 0, apply_unequal, spread_unequal, NULL, {0, 0}},
-    [OPERATION_SELECT] = {NULL, 3, 0, apply_select, spread_select, slope_select, {0}},
-    [OPERATION_SQUARE] = {NULL, 1, 0, apply_square, spread_square, slope_square, {0}},
-    [OPERATION_NORM3] = {NULL, 3, 0, apply_norm3, spread_norm3, slope_norm3, {0}},
-    [OPERATION_ABS] = {"abs", 1, 0, apply_abs, spread_abs, slope_abs, {0}},
-    [OPERATION_SQRT] = {"sqrt", 1, 0, apply_sqrt, spread_sqrt, slope_sqrt, {0}},
-    [OPERATION_HYPOT] = {"hypot", 2, 0, apply_hypot, spread_hypot, slope_hypot, {0}},
-    {"min", 2, 1, apply_min, spread_min, slope_min, {0}},
-    {"max", 2, 1, apply_max, spread_max, slope_max, {0}},
-    {"clamp", 3, 0, apply_clamp, spread_clamp, slope_clamp, {0}},
-    {"floor", 1, 0, apply_floor, spread_floor, NULL, {0}},
-    {"ceil", 1, 0, apply_ceil, spread_ceil, NULL, {0}},
-    {"round", 1, 0, apply_round, spread_round, NULL, {0}},
-    {"mod", 2, 0, apply_mod, spread_mod, slope_mod, {0}},
-    {"sin", 1, 0, apply_sin, spread_sin, slope_sin, {0}},
-    {"cos", 1, 0, apply_cos, spread_cos, slope_cos, {0}},
-    {"tan", 1, 0, apply_tan, spread_tan, slope_tan, {0}},
-    {"asin", 1, 0, apply_asin, spread_asin, slope_asin, {0}},
-    {"acos", 1, 0, apply_acos, spread_acos, slope_acos, {0}},
-    {"atan", 1, 0, apply_atan, spread_atan, slope_atan, {0}},
-    {"atan2", 2, 0, apply_atan2, spread_atan2, slope_atan2, {0}},
-    {"exp", 1, 0, apply_exp, spread_exp, slope_exp, {0}},
-    {"log", 1, 0, apply_log, spread_log, slope_log, {0}},
-    {"ramp", 5, 0, apply_ramp, spread_ramp, slope_ramp, {0}},
+        {NULL, 2, 0, apply_greater_equal, enclose_greater_equal, NULL, {0, 0}},
+    [OPERATION_EQUAL] = {NULL, 2, 0, apply_equal, enclose_equal, NULL, {0, 0}},
+    [OPERATION_UNEQUAL] = {NULL, 2, 0, apply_unequal, enclose_unequal, NULL, {0, 0}},
+    [OPERATION_SELECT] = {NULL, 3, 0, apply_select, enclose_select, slope_select, {0}},
+    [OPERATION_SQUARE] = {NULL, 1, 0, apply_square, enclose_square, slope_square, {0}},
+    [OPERATION_NORM3] = {NULL, 3, 0, apply_norm3, enclose_norm3, slope_norm3, {0}},
+    [OPERATION_ABS] = {"abs", 1, 0, apply_abs, enclose_abs, slope_abs, {0}},
+    [OPERATION_SQRT] = {"sqrt", 1, 0, apply_sqrt, enclose_sqrt, slope_sqrt, {0}},
+    [OPERATION_HYPOT] = {"hypot", 2, 0, apply_hypot, enclose_hypot, slope_hypot, {0}},
+    {"min", 2, 1, apply_min, enclose_min, slope_min, {0}},
+    {"max", 2, 1, apply_max, enclose_max, slope_max, {0}},
+    {"clamp", 3, 0, apply_clamp, enclose_clamp, slope_clamp, {0}},
+    {"floor", 1, 0, apply_floor, enclose_floor, NULL, {0}},
+    {"ceil", 1, 0, apply_ceil, enclose_ceil, NULL, {0}},
+    {"round", 1, 0, apply_round, enclose_round, NULL, {0}},
+    {"mod", 2, 0, apply_mod, enclose_mod, slope_mod, {0}},
+    {"sin", 1, 0, apply_sin, enclose_sin, slope_sin, {0}},
+    {"cos", 1, 0, apply_cos, enclose_cos, slope_cos, {0}},
+    {"tan", 1, 0, apply_tan, enclose_tan, slope_tan, {0}},
+    {"asin", 1, 0, apply_asin, enclose_asin, slope_asin, {0}},
+    {"acos", 1, 0, apply_acos, enclose_acos, slope_acos, {0}},
+    {"atan", 1, 0, apply_atan, enclose_atan, slope_atan, {0}},
+    {"atan2", 2, 0, apply_atan2, enclose_atan2, slope_atan2, {0}},
+    {"exp", 1, 0, apply_exp, enclose_exp, slope_exp, {0}},
+    {"log", 1, 0, apply_log, enclose_log, slope_log, {0}},
+    {"ramp", 5, 0, apply_ramp, enclose_ramp, slope_ramp, {0}},
 };
 
 const iso_operation *operation_at(int32_t index) {

@@ -12,11 +12,11 @@ enum { OPERATION_OPERANDS = 5 };
 /* What a value and its derivatives in some variables can be over a box. Derivatives hold wherever
  * there is one; where the value has a kink, all slopes between those beside it are in them, where
  * it jumps they are infinite. So the value changes by no more than they say. */
-enum { SPREAD_SLOPES = 3 };
+enum { ENCLOSURE_SLOPES = 3 };
 
-typedef struct spread {
-    interval value, slope[SPREAD_SLOPES];
-} spread;
+typedef struct enclosure {
+    interval value, slope[ENCLOSURE_SLOPES];
+} enclosure;
 
 /* to[i] = f(from[0][i], from[1][i] ...); `to` may be one of them. */
 typedef void iso_operation_apply(double *to, const double *const *from, int32_t count);
@@ -28,14 +28,14 @@ typedef void iso_operation_slope(double *const *slope, const double *const *from
                                  const double *value, int32_t count);
 
 /* Of a result from those of its operands: the slopes of all `slopes` first variables. */
-typedef void iso_operation_spread(spread *to, const spread *const *from, int32_t slopes);
+typedef void iso_operation_enclose(enclosure *to, const enclosure *const *from, int32_t slopes);
 
 typedef struct iso_operation {
     const char *name; /* of a function */
     int32_t operands;
     int32_t more; /* takes any larger number of them too, two by two from the left */
     iso_operation_apply *apply;
-    iso_operation_spread *spread;
+    iso_operation_enclose *enclose;
     iso_operation_slope *slope; /* NULL: it is `factor`, everywhere */
     double factor[2];
 } iso_operation;

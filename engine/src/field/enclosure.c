@@ -1,11 +1,11 @@
-#include "field/spread.h"
+#include "field/enclosure.h"
 
 #include "base/series.h"
 
 static const double series_error = 8e-15;
 
 /* Slopes by the chain rule, from those of the operation by each operand. */
-static void chain(spread *to, const interval *by, const spread *const *from, int32_t operands,
+static void chain(enclosure *to, const interval *by, const enclosure *const *from, int32_t operands,
                   int32_t slopes) {
     for (int32_t c = 0; c < slopes; c++) {
         interval sum = interval_at(0);
@@ -19,13 +19,13 @@ static void chain(spread *to, const interval *by, const spread *const *from, int
     }
 }
 
-static void flat(spread *to, int32_t slopes) {
+static void flat(enclosure *to, int32_t slopes) {
     for (int32_t c = 0; c < slopes; c++)
         to->slope[c] = interval_at(0);
 }
 
 /* The value may jump: by whatever an operand isn't constant in there is no bound. */
-static void jump(spread *to, const spread *const *from, int32_t operands, int32_t slopes) {
+static void jump(enclosure *to, const enclosure *const *from, int32_t operands, int32_t slopes) {
     for (int32_t c = 0; c < slopes; c++) {
         to->slope[c] = interval_at(0);
         for (int32_t k = 0; k < operands; k++)
@@ -34,13 +34,14 @@ static void jump(spread *to, const spread *const *from, int32_t operands, int32_
     }
 }
 
-static void nothing_known(spread *to, const spread *const *from, int32_t operands, int32_t slopes) {
+static void nothing_known(enclosure *to, const enclosure *const *from, int32_t operands,
+                          int32_t slopes) {
     to->value = interval_whole();
     jump(to, from, operands, slopes);
 }
 
 /* The result is one of two, not known which: continuous where it changes over. */
-static void either(spread *to, const spread *a, const spread *b, int32_t slopes) {
+static void either(enclosure *to, const enclosure *a, const enclosure *b, int32_t slopes) {
     to->value = interval_hull(a->value, b->value);
     for (int32_t c = 0; c < slopes; c++)
         to->slope[c] = interval_hull(a->slope[c], b->slope[c]);
@@ -52,19 +53,19 @@ static interval grown(interval a, double error) {
 
 /* ---- operators ---- */
 
-void spread_negate(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_negate(enclosure *to, const enclosure *const *from, int32_t slopes) {
     to->value = interval_negate(from[0]->value);
     for (int32_t c = 0; c < slopes; c++)
         to->slope[c] = interval_negate(from[0]->slope[c]);
 }
 
-void spread_add(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_add(enclosure *to, const enclosure *const *from, int32_t slopes) {
     static const interval by[2] = {{1, 1}, {1, 1}};
     to->value = interval_add(from[0]->value, from[1]->value);
     chain(to, by, from, 2, slopes);
 }
 
-void spread_subtract(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_subtract(enclosure *to, const enclosure *const *from, int32_t slopes) {
     static const interval by[2] = {{1, 1}, {-1, -1}};
     to->value = interval_subtract(from[0]->value, from[1]->value);
     chain(to, by, from, 2, slopes);
@@ -77,7 +78,7 @@ static bool has_no_product(interval a, interval b) {
            (!interval_is_finite(b) && interval_has(a, 0));
 }
 
-void spread_multiply(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_multiply(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value, by[2] = {b, a};
     if (has_no_product(a, b)) {
         nothing_known(to, from, 2, slopes);
@@ -87,7 +88,7 @@ void spread_multiply(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, by, from, 2, slopes);
 }
 
-void spread_divide(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_divide(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     if (interval_has(b, 0) || !interval_is_finite(b)) {
         nothing_known(to, from, 2, slopes);
@@ -132,7 +133,7 @@ static interval positive_log(interval a) {
                       : interval_outward(series_log(a.low), series_log(a.high), series_error);
 }
 
-void spread_power(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_power(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     bool fixed = b.low == b.high, is_known = interval_is_finite(a) || b.low >= 0;
     if (fixed && is_known && floor(b.low) == b.low && fabs(b.low) <= 1024) {
@@ -155,7 +156,8 @@ void spread_power(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, by, from, 2, slopes);
 }
 
-static void decide(spread *to, const spread *const *from, bool always, bool never, int32_t slopes) {
+static void decide(enclosure *to, const enclosure *const *from, bool always, bool never,
+                   int32_t slopes) {
     to->value = always ? interval_at(1) : never ? interval_at(0) : (interval){0, 1};
     if (always || never)
         flat(to, slopes);
@@ -164,54 +166,54 @@ static void decide(spread *to, const spread *const *from, bool always, bool neve
 }
 
 /* What may not be a number decides nothing. */
-static bool are_numbers(const spread *const *from) {
+static bool are_numbers(const enclosure *const *from) {
     return interval_is_finite(from[0]->value) && interval_is_finite(from[1]->value);
 }
 
-void spread_less(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_less(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     bool known = are_numbers(from);
     decide(to, from, known && a.high < b.low, known && a.low >= b.high, slopes);
 }
 
-void spread_less_equal(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_less_equal(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     bool known = are_numbers(from);
     decide(to, from, known && a.high <= b.low, known && a.low > b.high, slopes);
 }
 
-void spread_greater(spread *to, const spread *const *from, int32_t slopes) {
-    const spread *const turned[2] = {from[1], from[0]};
-    spread_less(to, turned, slopes);
+void enclose_greater(enclosure *to, const enclosure *const *from, int32_t slopes) {
+    const enclosure *const turned[2] = {from[1], from[0]};
+    enclose_less(to, turned, slopes);
 }
 
-void spread_greater_equal(spread *to, const spread *const *from, int32_t slopes) {
-    const spread *const turned[2] = {from[1], from[0]};
-    spread_less_equal(to, turned, slopes);
+void enclose_greater_equal(enclosure *to, const enclosure *const *from, int32_t slopes) {
+    const enclosure *const turned[2] = {from[1], from[0]};
+    enclose_less_equal(to, turned, slopes);
 }
 
-void spread_equal(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_equal(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     bool known = are_numbers(from);
     decide(to, from, known && interval_is(a, a.high) && interval_is(b, a.low),
            known && (a.high < b.low || a.low > b.high), slopes);
 }
 
-void spread_unequal(spread *to, const spread *const *from, int32_t slopes) {
-    spread equal;
-    spread_equal(&equal, from, slopes);
+void enclose_unequal(enclosure *to, const enclosure *const *from, int32_t slopes) {
+    enclosure equal;
+    enclose_equal(&equal, from, slopes);
     *to = equal;
     to->value = (interval){1 - equal.value.high, 1 - equal.value.low};
 }
 
-void spread_select(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_select(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     if (interval_is(a, 0)) {
         *to = *from[2];
     } else if (!interval_has(a, 0)) {
         *to = *from[1];
     } else {
-        spread jumps;
+        enclosure jumps;
         either(to, from[1], from[2], slopes);
         jump(&jumps, from, 1, slopes); /* where only the condition changes over */
         for (int32_t c = 0; c < slopes; c++)
@@ -220,13 +222,13 @@ void spread_select(spread *to, const spread *const *from, int32_t slopes) {
     }
 }
 
-void spread_square(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_square(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, by = {2 * a.low, 2 * a.high};
     to->value = interval_square(a);
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_norm3(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_norm3(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value, c = from[2]->value;
     to->value = interval_norm(interval_norm(a, b), c);
     interval by[3] = {interval_share(a, interval_norm(b, c)),
@@ -237,14 +239,14 @@ void spread_norm3(spread *to, const spread *const *from, int32_t slopes) {
 
 /* ---- functions with kinks and jumps ---- */
 
-void spread_abs(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_abs(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     interval by = a.low > 0 ? interval_at(1) : a.high < 0 ? interval_at(-1) : (interval){-1, 1};
     to->value = interval_abs(a);
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_min(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_min(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     if (!are_numbers(from)) {
         nothing_known(to, from, 2, slopes);
@@ -256,7 +258,7 @@ void spread_min(spread *to, const spread *const *from, int32_t slopes) {
     }
 }
 
-void spread_max(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_max(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     if (!are_numbers(from)) {
         nothing_known(to, from, 2, slopes);
@@ -269,21 +271,22 @@ void spread_max(spread *to, const spread *const *from, int32_t slopes) {
 }
 
 /* Between ends in order it is min(max(v, low), high). */
-void spread_clamp(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_clamp(enclosure *to, const enclosure *const *from, int32_t slopes) {
     if (from[1]->value.high <= from[2]->value.low) {
-        spread up;
-        const spread *pair[2] = {from[0], from[1]};
-        spread_max(&up, pair, slopes);
+        enclosure up;
+        const enclosure *pair[2] = {from[0], from[1]};
+        enclose_max(&up, pair, slopes);
         pair[0] = &up;
         pair[1] = from[2];
-        spread_min(to, pair, slopes);
+        enclose_min(to, pair, slopes);
         return;
     }
     jump(to, from, 3, slopes);
     to->value = interval_hull(from[0]->value, interval_hull(from[1]->value, from[2]->value));
 }
 
-static void steps(spread *to, const spread *const *from, double low, double high, int32_t slopes) {
+static void steps(enclosure *to, const enclosure *const *from, double low, double high,
+                  int32_t slopes) {
     to->value = low <= high ? (interval){low, high} : interval_whole();
     if (low == high)
         flat(to, slopes);
@@ -291,20 +294,20 @@ static void steps(spread *to, const spread *const *from, double low, double high
         jump(to, from, 1, slopes);
 }
 
-void spread_floor(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_floor(enclosure *to, const enclosure *const *from, int32_t slopes) {
     steps(to, from, floor(from[0]->value.low), floor(from[0]->value.high), slopes);
 }
 
-void spread_ceil(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_ceil(enclosure *to, const enclosure *const *from, int32_t slopes) {
     steps(to, from, ceil(from[0]->value.low), ceil(from[0]->value.high), slopes);
 }
 
-void spread_round(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_round(enclosure *to, const enclosure *const *from, int32_t slopes) {
     steps(to, from, round(from[0]->value.low), round(from[0]->value.high), slopes);
 }
 
 /* a - b floor(a / b), as long as that is one number. */
-void spread_mod(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_mod(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     if (interval_has(b, 0) || !are_numbers(from)) {
         nothing_known(to, from, 2, slopes);
@@ -325,8 +328,8 @@ void spread_mod(spread *to, const spread *const *from, int32_t slopes) {
 }
 
 /* With ends that may meet it may jump. Between, t is the share of the way from one to the other. */
-void spread_ramp(spread *to, const spread *const *from, int32_t slopes) {
-    const spread *a = from[3], *b = from[4];
+void enclose_ramp(enclosure *to, const enclosure *const *from, int32_t slopes) {
+    const enclosure *a = from[3], *b = from[4];
     interval length = interval_subtract(from[2]->value, from[1]->value);
     interval way = interval_subtract(from[0]->value, from[1]->value);
     either(to, a, b, slopes);
@@ -354,19 +357,19 @@ void spread_ramp(spread *to, const spread *const *from, int32_t slopes) {
 
 /* ---- smooth functions ---- */
 
-void spread_sqrt(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_sqrt(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval by = interval_divide(interval_at(0.5), interval_sqrt(from[0]->value));
     to->value = interval_sqrt(from[0]->value);
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_sin(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_sin(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval cosine;
     interval_sine_cosine(&to->value, &cosine, from[0]->value);
     chain(to, &cosine, from, 1, slopes);
 }
 
-void spread_cos(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_cos(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval sine;
     interval_sine_cosine(&sine, &to->value, from[0]->value);
     sine = interval_negate(sine);
@@ -374,7 +377,7 @@ void spread_cos(spread *to, const spread *const *from, int32_t slopes) {
 }
 
 /* Where the cosine has one sign it rises. */
-void spread_tan(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_tan(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, sine, cosine;
     interval_sine_cosine(&sine, &cosine, a);
     if (!(a.high - a.low < 3) || interval_has(cosine, 0) || !interval_is_finite(cosine)) {
@@ -398,7 +401,7 @@ static bool is_sine(interval a) {
     return a.low >= -1 && a.high <= 1;
 }
 
-void spread_asin(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_asin(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     if (!is_sine(a)) {
         nothing_known(to, from, 1, slopes);
@@ -409,7 +412,7 @@ void spread_asin(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_acos(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_acos(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     if (!is_sine(a)) {
         nothing_known(to, from, 1, slopes);
@@ -420,7 +423,7 @@ void spread_acos(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_atan(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_atan(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     if (!interval_is_finite(a)) {
         nothing_known(to, from, 1, slopes);
@@ -431,7 +434,7 @@ void spread_atan(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_atan2(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_atan2(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval y = from[0]->value, x = from[1]->value, norm = interval_norm(x, y);
     bool jumps;
     to->value = interval_angle(&jumps, y, x);
@@ -444,7 +447,7 @@ void spread_atan2(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, by, from, 2, slopes);
 }
 
-void spread_exp(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_exp(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     if (!interval_is_finite(a)) {
         nothing_known(to, from, 1, slopes);
@@ -457,7 +460,7 @@ void spread_exp(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_log(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_log(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value;
     if (a.low <= 0) {
         nothing_known(to, from, 1, slopes);
@@ -468,7 +471,7 @@ void spread_log(spread *to, const spread *const *from, int32_t slopes) {
     chain(to, &by, from, 1, slopes);
 }
 
-void spread_hypot(spread *to, const spread *const *from, int32_t slopes) {
+void enclose_hypot(enclosure *to, const enclosure *const *from, int32_t slopes) {
     interval a = from[0]->value, b = from[1]->value;
     interval by[2] = {interval_share(a, b), interval_share(b, a)};
     to->value = interval_norm(a, b);
