@@ -54,14 +54,14 @@ static bool same(double a, double b) {
         iso_expression *same_expression = compiled(text);                                          \
         static double same_value[VALUES];                                                          \
         expression_evaluate(same_value, same_expression, places, VALUES);                          \
-        int wrong = 0;                                                                             \
+        int same_wrong = 0;                                                                        \
         for (int i = 0; i < VALUES; i++) {                                                         \
             double x = place[0][i], y = place[1][i], z = place[2][i], skin = place[3][i],          \
                    r = place[4][i], grid = place[5][i];                                            \
             (void)x, (void)y, (void)z, (void)skin, (void)r, (void)grid;                            \
-            wrong += !same(expected, same_value[i]);                                               \
+            same_wrong += !same(expected, same_value[i]);                                          \
         }                                                                                          \
-        if (!CHECK_EQUAL(0, wrong))                                                                \
+        if (!CHECK_EQUAL(0, same_wrong))                                                           \
             fprintf(stderr, "%s\n", text);                                                         \
         expression_free(same_expression);                                                          \
     } while (0)
