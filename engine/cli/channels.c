@@ -33,11 +33,6 @@ static double clock_seconds(void) {
 
 // What is asked for
 
-static bool ends_in(const char *path, const char *ending) {
-    size_t length = strlen(path), n = strlen(ending);
-    return length > n && strcasecmp(path + length - n, ending) == 0;
-}
-
 static bool is_named_mould(const char *path) {
     const char *base = strrchr(path, '/');
     for (const char *c = base ? base + 1 : path; *c; c++)
@@ -47,11 +42,11 @@ static bool is_named_mould(const char *path) {
 }
 
 static iso_status find_output(output *found, const char *path, const char *write) {
-    if (ends_in(path, ".mlk") || ends_in(path, ".svg")) {
-        *found = ends_in(path, ".mlk") ? OUTPUT_LINK : OUTPUT_PICTURE;
+    if (iso_ends_in(path, ".mlk") || iso_ends_in(path, ".svg")) {
+        *found = iso_ends_in(path, ".mlk") ? OUTPUT_LINK : OUTPUT_PICTURE;
         return write ? iso_fail(ISO_USAGE, "--write %.60s: %s isn't an .stl", write, path) : ISO_OK;
     }
-    if (!ends_in(path, ".stl") && strcmp(path, "-") != 0)
+    if (!iso_ends_in(path, ".stl") && strcmp(path, "-") != 0)
         return iso_fail(ISO_USAGE, "%s: channels are written as .stl, .mlk or .svg", path);
     *found = is_named_mould(path) ? OUTPUT_MOULD : OUTPUT_CHANNELS;
     if (!write)

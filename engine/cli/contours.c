@@ -5,7 +5,6 @@
 #include <isoslice/slice.h>
 
 #include <string.h>
-#include <strings.h>
 
 #include "base/memory.h"
 #include "base/output.h"
@@ -141,13 +140,8 @@ static iso_status write_json(iso_output *output, const cut *part) {
     return iso_output_print(output, "\n]}\n");
 }
 
-static bool ends_with(const char *path, const char *ending) {
-    size_t length = strlen(path), n = strlen(ending);
-    return length > n && strcasecmp(path + length - n, ending) == 0;
-}
-
 static iso_status write_contours(const char *path, const cut *part) {
-    bool json = ends_with(path, ".json"), svg = ends_with(path, ".svg");
+    bool json = iso_ends_in(path, ".json"), svg = iso_ends_in(path, ".svg");
     if (!json && !svg)
         return write_link(path, part);
     iso_output *output;
@@ -196,8 +190,8 @@ iso_status iso_verb_contours(const iso_arguments *arguments) {
         ISO_TRY(iso_replace_ending(name, sizeof name, arguments->file[0], ".mlk"));
         path = name;
     }
-    if (strcmp(path, "-") != 0 && !ends_with(path, ".mlk") && !ends_with(path, ".json") &&
-        !ends_with(path, ".svg"))
+    if (strcmp(path, "-") != 0 && !iso_ends_in(path, ".mlk") && !iso_ends_in(path, ".json") &&
+        !iso_ends_in(path, ".svg"))
         return iso_fail(ISO_USAGE, "%s: contours are written as .mlk, .json or .svg", path);
     ISO_TRY(iso_keep_files(arguments, path));
     ISO_TRY(warn(arguments));

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/resource.h>
 #include <time.h>
 
@@ -46,10 +45,8 @@ static double clock_seconds(void) {
 
 static iso_status find_format(format *found, const char *path) {
     static const char *const ending[FORMAT_COUNT] = {".stl", ".vdb", ".gcode"};
-    size_t length = strlen(path);
     for (int f = 0; f < FORMAT_COUNT; f++) {
-        size_t n = strlen(ending[f]);
-        if (length > n && strcasecmp(path + length - n, ending[f]) == 0) {
+        if (iso_ends_in(path, ending[f])) {
             *found = f;
             return ISO_OK;
         }

@@ -2,6 +2,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "base/output.h"
@@ -27,6 +28,11 @@ iso_status iso_replace_ending(char *out, size_t size, const char *file, const ch
         return iso_fail(ISO_USAGE, "%.60s...: the name is too long", file);
     snprintf(out, size, "%.*s%s", (int)length, file, ending);
     return ISO_OK;
+}
+
+bool iso_ends_in(const char *path, const char *ending) {
+    size_t length = strlen(path), n = strlen(ending);
+    return length > n && strcasecmp(path + length - n, ending) == 0;
 }
 
 iso_status iso_keep_files(const iso_arguments *arguments, const char *path) {

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/memory.h"
 #include "base/output.h"
@@ -15,6 +14,7 @@
 #include "curved.h"
 #include "slice/range.h"
 #include "space_map.h"
+#include "verbs.h"
 
 typedef struct cut {
     const iso_options *options;
@@ -180,13 +180,8 @@ static iso_status write_picture(iso_output *output, const cut *c, const iso_argu
     return iso_space_map(output, &c->all, &c->levels, c->body, c->count, &view);
 }
 
-static bool ends_with(const char *path, const char *ending) {
-    size_t length = strlen(path), n = strlen(ending);
-    return length > n && strcasecmp(path + length - n, ending) == 0;
-}
-
 static iso_status write_contours(const char *path, const cut *c, const iso_arguments *arguments) {
-    bool json = ends_with(path, ".json"), svg = ends_with(path, ".svg");
+    bool json = iso_ends_in(path, ".json"), svg = iso_ends_in(path, ".svg");
     iso_output *output;
     if (!json && !svg)
         return write_link(path, &c->all);

@@ -33,6 +33,9 @@ iso_status iso_page_print(const iso_arguments *arguments) ISO_MUST_CHECK;
 iso_status iso_replace_ending(char *out, size_t size, const char *file,
                               const char *ending) ISO_MUST_CHECK;
 
+/* Whatever the case of its letters; a name that is nothing else has no ending. */
+bool iso_ends_in(const char *path, const char *ending);
+
 /* A result must not take the place of what it is made from: ISO_USAGE if `path` is one of the
  * files. NULL and "-" are none. */
 iso_status iso_keep_files(const iso_arguments *arguments, const char *path) ISO_MUST_CHECK;
