@@ -106,7 +106,7 @@ def draw_sections(work, name, model, fields, size):
         drawn += [f'<text x="{SCALE - wide // 2}" y="{i * high + wide // 40}">field = {field}</text>',
                   f'<g transform="translate(0,{(i + 1) * high - 40})">',
                   f'<path d="M{-wide // 2} 0h{wide}" stroke="#000" stroke-width="6"/>',
-                  *section(crossings(work / f"{name}.gcode", 100.3), 100, f"{name}{i}"), "</g>"]
+                  *section(crossings(work / f"{name}.gcode", 100.3003), 100, f"{name}{i}"), "</g>"]
     (FOLDER / f"curved-{name}.svg").write_text("\n".join([*drawn, "</svg>", ""]))
 
 
@@ -179,7 +179,7 @@ def main():
         run(PROGRAM, "-q", work / "dome.stl", "-o", work / "dome.gcode", *PRINT, "--field", FIELD,
             "--fill-pattern", "gyroid", "--perimeters", "2", "--field-tolerance", "0.05")
         run(PROGRAM, "preview", "-q", work / "dome.gcode", "-o", FOLDER / "curved-layers.svg", "--layers",
-            "1,12,24,30", "--columns", "2", "--view=-70,35", "--no-travels")
+            "1,12,24,-1", "--columns", "2", "--view=-70,35", "--no-travels")
     draw_tool()
 
 
