@@ -337,7 +337,7 @@ static void test_noisy(void) {
     };
     iso_mesh mesh;
     double level[40];
-    make_noisy(&mesh, 24, 77);
+    make_noisy(&mesh, 16, 77);
     for (int i = 0; i < 40; i++)
         level[i] = -9.5 + 0.81 * i;
     for (size_t i = 0; i < sizeof f / sizeof *f; i++)
