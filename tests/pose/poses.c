@@ -289,6 +289,26 @@ static void test_turns_are_wound_back_between_paths(void) {
     iso_paths_free(&paths);
 }
 
+static void test_layers_that_lean_along_a_mandrel(void) {
+    for (int k = ISO_KINEMATICS_ROTARY_A; k <= ISO_KINEMATICS_TABLE_BC; k++) {
+        pose_machine machine = machine_of((iso_kinematics)k);
+        bool x = k == ISO_KINEMATICS_ROTARY_A, mandrel = k <= ISO_KINEMATICS_ROTARY_B;
+        for (int lean = -50; lean <= 50; lean += 2) {
+            double s = sin(lean * pi / 180), c = cos(lean * pi / 180);
+            iso_paths paths = {0};
+            iso_pose pose[37], last = {0};
+            add_arc(&paths, &machine, 0, 40, false);
+            for (int i = 0; i < paths.vertex_count; i++)
+                paths.frame[i].normal = (iso_vec3){x ? s : 0, x ? 0 : s, c};
+            iso_status status = pose_paths(pose, NULL, &last, &paths, 0, &machine);
+            CHECK_EQUAL(mandrel && abs(lean) > 45 ? ISO_OUTSIDE : ISO_OK, status);
+            if (lean == 50 && mandrel)
+                CHECK(strstr(iso_error_message(), "leans by 50 degrees along the mandrel"));
+            iso_paths_free(&paths);
+        }
+    }
+}
+
 /* A flat layer leaves a table level and turned as it is; nobody goes to single points. */
 static void test_flat_layers(void) {
     pose_machine machine = machine_of(ISO_KINEMATICS_TABLE_BC);
@@ -314,6 +334,7 @@ int main(void) {
     RUN(test_limits_are_named);
     RUN(test_paths_go_around);
     RUN(test_turns_are_wound_back_between_paths);
+    RUN(test_layers_that_lean_along_a_mandrel);
     RUN(test_flat_layers);
     return check_verdict();
 }

@@ -197,6 +197,23 @@ static iso_status check_winding(const iso_pose *from, const iso_pose *to, iso_ve
                     machine->high[TURN]);
 }
 
+/* Layers that lie around another axis than the mandrel's have such beads. */
+static iso_status check_lean(iso_vec3 normal, iso_vec3 at, const pose_machine *machine) {
+    bool a = machine->kinematics == ISO_KINEMATICS_ROTARY_A;
+    double sine, cosine, along = fabs(a ? normal.x : normal.y);
+    if (!a && machine->kinematics != ISO_KINEMATICS_ROTARY_B)
+        return ISO_OK;
+    iso_sine_cosine(&sine, &cosine, POSE_LEAN);
+    if (along <= sine)
+        return ISO_OK;
+    return iso_fail(ISO_OUTSIDE,
+                    "at x = %.3f, y = %.3f, z = %.3f mm the layer leans by %.0f degrees along the "
+                    "mandrel, and %s can't turn it up: it takes a field whose layers lie around "
+                    "the %s axis",
+                    at.x, at.y, at.z, degrees_of(along, sqrt(fmax(0, 1 - along * along))),
+                    pose_letter(machine, TURN), a ? "x" : "y");
+}
+
 static iso_vec3 place_of(iso_point at, int64_t z) {
     return vec3(iso_mm(at.x), iso_mm(at.y), iso_mm(z));
 }
@@ -214,8 +231,10 @@ static iso_status pose_path(iso_pose *vertex, iso_pose *travel, iso_pose *last,
     for (int32_t k = 0; k < path->count + path->closed; k++) {
         int32_t i = path->first + (k < path->count ? k : 0);
         iso_vec3 at = place_of(paths->vertex[i].at, (int64_t)z + paths->vertex[i].z);
+        iso_vec3 normal = paths->frame ? paths->frame[i].normal : up;
         iso_pose here;
-        ISO_TRY(pose_at(&here, last, at, paths->frame ? paths->frame[i].normal : up, machine));
+        ISO_TRY(check_lean(normal, at, machine));
+        ISO_TRY(pose_at(&here, last, at, normal, machine));
         if (k > 0)
             ISO_TRY(check_winding(last, &here, at, machine));
         *last = here;

@@ -40,9 +40,13 @@ typedef struct iso_pose {
  * around. The tip's edge then lifts by 9 um a mm. */
 #define POSE_POLE 0.5
 
+/* degrees that a bead's layer may lean along a mandrel's axis, which no turning brings upright:
+ * farther, and the nozzle would draw with its side. */
+#define POSE_LEAN 45.0
+
 /* Poses of all vertices and travel points of a layer's ordered paths, in printing order, from where
  * the one before ended (last: in and out). `z` is the layer's nominal top, units. ISO_OUTSIDE,
- * naming the place and the axis: beyond its limits. */
+ * naming the place and the axis: beyond its limits, or leaning along it. */
 iso_status pose_paths(iso_pose *vertex, iso_pose *travel, iso_pose *last, const iso_paths *paths,
                       int32_t z, const pose_machine *machine) ISO_MUST_CHECK;
 
