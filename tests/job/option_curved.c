@@ -123,7 +123,7 @@ static void check_clearance(const change *c) {
 /* Travels keep the tip's edge off the layer as well. */
 static void clearance_tip(const change *c) {
     CHECK(highest_travel(c->b) > highest_travel(c->a) + 0.05);
-    CHECK(is_refused(make_tower, QUICK SHORT "field = cone:20\nclearance_tip = 4\n", "nozzle"));
+    CHECK(is_refused(make_tower, QUICK SHORT "field = cone:18\nclearance_tip = 4\n", "nozzle"));
 }
 
 static void clearance_cone(const change *c) {
