@@ -300,13 +300,21 @@ static iso_status find_arcs(iso_gcode_layer_info *info, const iso_job *job, iso_
     return ISO_OK;
 }
 
+/* Then a step prints nothing where it is part of a thicker layer that ends higher up. */
+static bool merges(const iso_job *job) {
+    for (int32_t i = 0; i < job->plate.objects.count; i++)
+        if (curved_behind(&job->stack[i].curved) > 0)
+            return true;
+    return false;
+}
+
 static iso_status write_step(iso_job *job, const iso_step *step, int32_t index) {
     iso_point from = job->position;
     ISO_TRY(make_layers(job, step));
     ISO_TRY(order_step(job, step));
     ISO_TRY(spiral_step(job, step, index, from));
     double begun = iso_stage_clock();
-    if (job->ordered.count == 0 && job->empty++ == 0)
+    if (job->ordered.count == 0 && !merges(job) && job->empty++ == 0)
         job->lowest_empty = iso_mm(step->z);
     iso_arena *arena = &job->crew.hand[0].arena;
     iso_arena_mark mark = iso_arena_get_mark(arena);
