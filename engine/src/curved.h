@@ -29,7 +29,7 @@ iso_status curved_new(iso_curved *curved, iso_report *report, const iso_options 
                       const iso_object *object) ISO_MUST_CHECK;
 void curved_free(iso_curved *curved);
 
-/* degrees that fields which are made to measure keep to: field_slope, and what the nozzle can do. */
+/* degrees that fields made to measure keep to: field_slope, and what the nozzle can do. */
 double curved_steepest(const iso_options *options);
 
 static inline bool curved_is_flat(const iso_curved *curved) {
