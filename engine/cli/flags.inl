@@ -21,8 +21,7 @@ ISO_FLAG(
     "and walls ask for.")
 ISO_FLAG(pitch, 0, "MM", H,
          "Distance of the channels along the part's surface, 0.1 to 1000; usually 20.")
-ISO_FLAG(depth, 0, "MM", H,
-         "Distance of their middles from the surface, 0.1 to 1000; usually 10.")
+ISO_FLAG(depth, 0, "MM", H, "Distance of their middles from the surface, 0.1 to 1000; usually 10.")
 ISO_FLAG(section, 0, "SHAPE", H,
          "Their section in mm: round:D, square:A, rect:AxB, oval:AxB with A along the part, or "
          "polygon:SIDES:D; sizes 0.1 to 1000. Usually round:8.")
@@ -44,8 +43,7 @@ ISO_FLAG(ports, 0, "HOW", H,
          "each; none: closed rings. Usually parallel.")
 ISO_FLAG(side, 0, "SIDE", H,
          "Side of the mould that ports are on: front, back, left or right; usually front, -y.")
-ISO_FLAG(margin, 0, "MM", H,
-         "Mould around the part, 0 to 1000; usually what the channels ask for.")
+ISO_FLAG(margin, 0, "MM", H, "Mould around the part, 0 to 1000; usually what the channels ask for.")
 ISO_FLAG(wall, 0, "MM", H,
          "Least mould between channels, to the part and to the outside, 0 to 1000; usually 2. Less "
          "is refused, exit code 8.")

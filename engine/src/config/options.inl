@@ -185,8 +185,9 @@ ISO_OPTION(cusp_height, NUMBER, "0.05", "mm", 0.001, 1, "Layers",
            "Largest distance between the steps of adaptive layers and the true surface.")
 ISO_OPTION(min_layer_height, NUMBER, "0.07", "mm", 0.01, 5, "Layers",
            "Thinnest adaptive layer, and thinnest place of a curved one.")
-ISO_OPTION(max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
-           "Thickest adaptive layer, and thickest place of a curved one; 0 takes 75% of nozzle_diameter, for curved ones up to 1.5 times layer_height.")
+ISO_OPTION(
+    max_layer_height, NUMBER, "0", "mm", 0, 5, "Layers",
+    "Thickest adaptive layer, and thickest place of a curved one; 0 takes 75% of nozzle_diameter, for curved ones up to 1.5 times layer_height.")
 
 ISO_OPTION(
     field, TEXT, "", "", 0, 0, "Curved layers",
@@ -218,9 +219,8 @@ ISO_OPTION(
     "The heater block around the nozzle, seen from above: X,Y of one corner, X,Y of the opposite one; empty: there is none.")
 ISO_OPTION(clearance_carriage_height, NUMBER, "20", "mm", 0.1, 1000, "Curved layers",
            "Height above the tip at which the carriage begins.")
-ISO_OPTION(
-    clearance_carriage, NUMBERS, "-30,-30,30,30", "mm", -1000, 1000, "Curved layers",
-    "The carriage around the nozzle, as clearance_block; empty: there is none.")
+ISO_OPTION(clearance_carriage, NUMBERS, "-30,-30,30,30", "mm", -1000, 1000, "Curved layers",
+           "The carriage around the nozzle, as clearance_block; empty: there is none.")
 ISO_OPTION(
     clearance_gantry_height, NUMBER, "40", "mm", 0, 10000, "Curved layers",
     "Height above the tip at which the machine begins, wherever the nozzle is; 0: nothing is in the way.")
