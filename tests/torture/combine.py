@@ -166,11 +166,16 @@ def number(value, whole):
     return int(round(value)) if whole else float(f"{value:.4g}")
 
 
+# Without a field they do nothing; with one, curved.py throws them.
+OF_CURVED_LAYERS = re.compile("field|check_clearance|clearance_|kinematics|tilt_|turn_|rotary_")
+
+
 def read_options(program):
     text = subprocess.run([program, "--list-options"], capture_output=True, text=True,
                           check=True).stdout
     lines = [line for line in text.splitlines()[1:] if re.match(r"[a-z_0-9]+ {2}", line)]
-    return {option.key: option for option in map(Option, lines)}
+    return {option.key: option for option in map(Option, lines)
+            if not OF_CURVED_LAYERS.match(option.key)}
 
 
 # Extremes of these say nothing but that much work takes long.
