@@ -13,6 +13,10 @@
 /* Of a layer's thickness that the tip may press into it: layers are thinner in places. */
 #define TIP_SHARE 0.75
 
+/* Layers are planned by what the field does at the part's surface: within it they may be as much
+ * thicker or thinner than planned, and no more. */
+#define BEYOND_PLAN 1.5
+
 /* mm: sum of two sides of a face on which more than the corners is looked at. */
 #define LARGE_FACE 6
 
@@ -262,6 +266,8 @@ lift_options curved_lift_options(const iso_curved *curved, const iso_options *op
                          .z = levels->top[level],
                          .tolerance = options->field_tolerance,
                          .near = options->retract_before_travel,
+                         .least = options->min_layer_height / BEYOND_PLAN,
+                         .most = curved->spread.thickest * BEYOND_PLAN,
                          .clearance = fmax(options->retract_lift, 2 * options->layer_height)};
     if (options->kinematics == ISO_KINEMATICS_TABLE_AC ||
         options->kinematics == ISO_KINEMATICS_TABLE_BC)
